@@ -2,6 +2,8 @@ use std::fmt;
 
 use freeform_riccati::{MotionModel, ParameterKind, PlaneMotion};
 
+use super::settings::Method;
+
 /// Family of motions that is identified: of the picture, or of a plane in space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MotionFamily {
@@ -19,6 +21,12 @@ impl MotionFamily {
             Self::Picture(model) => Some(model),
             Self::Plane => None,
         }
+    }
+
+    /// Whether a method gives a velocity of the middle, where it is known: the motion filter does, but not of a plane in space.
+    #[must_use]
+    pub fn has_velocity(self, method: Method) -> bool {
+        method == Method::Filter && self != Self::Plane
     }
 
     /// Names of the parameters in order.

@@ -88,4 +88,21 @@ impl Observation {
             || self.plane_ambiguity.as_ref().is_some_and(|planes| planes.parameters.contains(&name));
         Some(NotStated::of(is_ambiguous, self.hidden.contains(&name)))
     }
+
+    /// As [`ObjectResult::velocity_not_stated`], as known after the frame.
+    #[must_use]
+    pub fn velocity_not_stated(&self) -> Option<NotStated> {
+        self.velocity.is_none().then(|| NotStated::of(self.ambiguity.is_some(), false))
+    }
+
+    /// Why an angle or matrix of the pose is not stated where it is not.
+    pub(super) fn turn_not_stated(&self) -> NotStated {
+        NotStated::of(self.ambiguity.is_some(), !self.hidden.is_empty())
+    }
+}
+
+/// What is empty in a row of a table, as a cell: `omega ambiguous; b1 ambiguous`, names and words in the order of the columns.
+pub(super) fn cell_of(unstated: impl Iterator<Item = (&'static str, NotStated)>) -> String {
+    let each: Vec<String> = unstated.map(|(name, reason)| format!("{name} {}", reason.name())).collect();
+    each.join("; ")
 }

@@ -79,7 +79,7 @@ impl ObjectResult {
     /// Whether the method gives a velocity of the middle, where it is known: the motion filter does, but not of a plane in space.
     #[must_use]
     pub fn has_velocity(&self) -> bool {
-        self.method == Method::Filter && self.motion != MotionFamily::Plane
+        self.motion.has_velocity(self.method)
     }
 
     /// The parameters of the motion, whichever family it is of; none where no motion was found.

@@ -1,18 +1,20 @@
 use std::io::{self, Write};
 
-use freeform_estimate::MotionEstimate;
+use freeform_estimate::{MotionEstimate, PointVelocity};
 use freeform_identify::AdaptiveDiagnostics;
 
 use super::{
     family::MotionFamily,
-    not_stated::NotStated,
+    not_stated::{NotStated, cell_of},
     observation::{ObjectPhase, Observation},
     result::{ObjectResult, VELOCITY_NAMES},
 };
 use crate::adaptive_progress::AdaptiveProgress;
 
 /// Writes a trace as CSV: one row per object and frame with the parameters as identified so far. The columns are `object`, `frame`, `time`, `phase`,
-/// `accepted`, then each parameter and its standard deviation (`_std`). What is not known is empty.
+/// `accepted`, then each parameter and its standard deviation (`_std`); with the motion filter, but of a plane in space, `v1`, `v1_std`, `v2` and
+/// `v2_std`, the velocity of the middle of the object; `reason`, why the frame was not accepted; and `unstated`, which values are empty and why, such
+/// as `omega ambiguous; b1 ambiguous`, with the words of [`NotStated`].
 ///
 /// ```
 /// use freeform_motion::outline_io::{DEFAULT_OBJECT, OutlineFrame};
@@ -30,13 +32,14 @@ use crate::adaptive_progress::AdaptiveProgress;
 ///     trace.write(&tracker.push(&outline))?;
 /// }
 /// let text = String::from_utf8(trace.into_inner()?)?;
-/// assert!(text.starts_with("object,frame,time,phase,accepted,omega,omega_std,b1,b1_std,b2,b2_std\n0,0,0,"));
+/// assert!(text.starts_with("object,frame,time,phase,accepted,omega,omega_std,b1,b1_std,b2,b2_std,v1,v1_std,v2,v2_std,reason,unstated\n"));
+/// assert!(text.lines().nth(1).unwrap().ends_with(",omega unknown; b1 unknown; b2 unknown; v1 unknown; v2 unknown"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
 pub struct TraceWriter<W: Write> {
     writer: csv::Writer<W>,
-    parameters: usize,
+    family: MotionFamily,
     adaptive: Option<AdaptiveColumns>,
 }
 
@@ -65,12 +68,22 @@ impl<W: Write> TraceWriter<W> {
     ///
     /// Those of the sink.
     pub fn new(sink: W, family: MotionFamily, adaptive: Option<AdaptiveColumns>) -> io::Result<Self> {
-        let mut writer = csv::Writer::from_writer(sink);
         let mut header: Vec<String> = ["object", "frame", "time", "phase", "accepted"].map(str::to_owned).into();
         header.extend(family.parameter_names().iter().flat_map(|name| [(*name).to_owned(), format!("{name}_std")]));
         header.extend(adaptive.iter().flat_map(|_| AdaptiveColumns::NAMES.map(str::to_owned)));
-        writer.write_record(&header).map_err(io::Error::from)?;
-        Ok(Self { writer, parameters: family.parameter_names().len(), adaptive })
+        let mut trace = Self { writer: csv::Writer::from_writer(sink), family, adaptive };
+        if trace.has_velocity() {
+            header.extend(velocity_columns());
+        }
+        // The last columns, so that those before them are where they always were.
+        header.extend(["reason", "unstated"].map(str::to_owned));
+        trace.writer.write_record(&header).map_err(io::Error::from)?;
+        Ok(trace)
+    }
+
+    /// Whether there are columns for the velocity of the middle.
+    fn has_velocity(&self) -> bool {
+        self.adaptive.is_none() && self.family != MotionFamily::Plane
     }
 
     /// Writes what a frame of an object gave.
@@ -88,9 +101,18 @@ impl<W: Write> TraceWriter<W> {
         ];
         match observation.parameters() {
             Some(found) => row.extend(found.iter().flat_map(|p| [optional(p.value), optional(p.standard_deviation)])),
-            None => row.extend(std::iter::repeat_n(String::new(), 2 * self.parameters)),
+            None => row.extend(std::iter::repeat_n(String::new(), 2 * self.family.parameter_names().len())),
         }
         row.extend(self.adaptive.iter().flat_map(|adaptive| adaptive.cells(observation.progress.as_ref())));
+        let mut velocity_unstated = None;
+        if self.has_velocity() {
+            row.extend(velocity_cells(observation.velocity.as_ref()));
+            velocity_unstated = observation.velocity_not_stated();
+        }
+        row.push(observation.rejection.as_ref().map_or_else(String::new, ToString::to_string));
+        let names = self.family.parameter_names().iter();
+        let parameters = names.filter_map(|name| Some((*name, observation.not_stated(name)?)));
+        row.push(cell_of(parameters.chain(of_velocity(velocity_unstated))));
         self.writer.write_record(&row).map_err(io::Error::from)
     }
 
@@ -113,6 +135,23 @@ pub(super) fn text_cell(name: &str) -> String {
     let seen = name.trim_start_matches('\u{feff}');
     let begins_formula = seen.starts_with(BEGINS_FORMULA) && seen.parse::<f64>().is_err();
     if begins_formula { format!("'{name}") } else { name.to_owned() }
+}
+
+/// Names of the columns of the velocity of the middle.
+pub(super) fn velocity_columns() -> impl Iterator<Item = String> {
+    VELOCITY_NAMES.into_iter().flat_map(|name| [name.to_owned(), format!("{name}_std")])
+}
+
+/// What is in them.
+pub(super) fn velocity_cells(velocity: Option<&PointVelocity>) -> [String; 4] {
+    let Some(velocity) = velocity.filter(|velocity| velocity.is_finite()) else { return Default::default() };
+    let deviations = velocity.standard_deviations();
+    [velocity.velocity.x, deviations.x, velocity.velocity.y, deviations.y].map(|number| number.to_string())
+}
+
+/// Both components with why they are not stated, if they are not.
+pub(super) fn of_velocity(reason: Option<NotStated>) -> impl Iterator<Item = (&'static str, NotStated)> {
+    VELOCITY_NAMES.into_iter().filter_map(move |name| Some((name, reason?)))
 }
 
 fn optional(value: Option<f64>) -> String {

@@ -1,10 +1,13 @@
 //! The pose of every object in every frame.
 use std::collections::HashMap;
 
-use freeform_estimate::{MotionEstimate, MotionState, PoseParameter, ProcessNoise, SmootherError, smooth};
+use freeform_estimate::{
+    MotionEstimate, MotionState, PointVelocity, PoseParameter, ProcessNoise, SmootherError, smooth,
+};
 use freeform_riccati::{CameraScale, MotionModel};
 
-use super::{MethodSettings, Tracker, observation::Observation};
+use super::{MethodSettings, Tracker, not_stated::NotStated, observation::Observation};
+use crate::rejection::FrameRejection;
 
 /// The pose of every object in every frame: one row per observation, in their order. It needs the motion filter: the adaptive method gives no poses.
 ///
@@ -44,11 +47,17 @@ pub struct TrajectoryRow {
     pub time: Option<f64>,
     /// Whether the frame was used.
     pub accepted: bool,
+    /// Why it was not.
+    pub rejection: Option<FrameRejection>,
     /// Counted up from 0 where the object was given up and begun anew, and where a frame has shown its turn for the first time: nobody knows how far
     /// the object had turned between poses of different segments.
     pub segment: usize,
     /// The state known then, at a time up to that of the frame.
     state: Option<MotionState>,
+    /// Why each parameter of the motion that was not stated then was not, and the turn of the pose, where it was not.
+    not_stated: Vec<(&'static str, NotStated)>,
+    turn_not_stated: NotStated,
+    velocity_not_stated: Option<NotStated>,
 }
 
 /// Pose and motion of an object in one frame.
@@ -59,6 +68,8 @@ pub struct PoseAndMotion {
     pub pose: Vec<PoseParameter>,
     /// The motion.
     pub motion: MotionEstimate,
+    /// Velocity of the middle of the object; `None` where it is not stated.
+    pub velocity: Option<PointVelocity>,
 }
 
 /// An object whose poses are not smoothed.
@@ -90,18 +101,40 @@ impl TrajectoryRow {
         // Not since it was lost: where it is then is a guess.
         (state.time() == time).then_some(state)
     }
+
+    /// Why a value of the row is not stated, of those that are not: of the motion by the name of the parameter, `v1` or `v2`, of the pose by any other.
+    #[must_use]
+    pub fn why_unstated(&self, name: &str) -> NotStated {
+        if self.state().is_none() {
+            // Not even where it is.
+            return NotStated::Unknown;
+        }
+        match name {
+            "v1" | "v2" => self.velocity_not_stated.unwrap_or(NotStated::Unknown),
+            _ => {
+                let of_motion = self.not_stated.iter().find(|(parameter, _)| *parameter == name);
+                of_motion.map_or(self.turn_not_stated, |(_, reason)| *reason)
+            }
+        }
+    }
 }
 
 impl Trajectory {
     /// Adds the observation of a frame.
     pub fn take(&mut self, observation: &Observation) {
+        let parameters = observation.estimate.iter().flat_map(MotionEstimate::parameters);
+        let not_stated = parameters.filter_map(|p| Some((p.name, observation.not_stated(p.name)?)));
         self.rows.push(TrajectoryRow {
             object: observation.object.clone(),
             frame: observation.frame,
             time: observation.time,
             accepted: observation.is_accepted(),
             segment: observation.segment,
+            rejection: observation.rejection.clone(),
             state: observation.state.clone(),
+            not_stated: not_stated.collect(),
+            turn_not_stated: observation.turn_not_stated(),
+            velocity_not_stated: observation.velocity_not_stated(),
         });
     }
 
@@ -132,7 +165,12 @@ impl Trajectory {
             let mut pose = state.pose_parameters();
             pose.iter_mut().for_each(|parameter| report(parameter, scale, angles.entry(&row.object).or_default()));
             let motion = state.motion();
-            Some(PoseAndMotion { pose, motion: scale.map_or(motion, |scale| motion.in_space(scale)) })
+            let velocity = row.velocity_not_stated.is_none().then(|| state.velocity_of_middle());
+            Some(PoseAndMotion {
+                pose,
+                motion: scale.map_or(motion, |scale| motion.in_space(scale)),
+                velocity: velocity.map(|velocity| scale.map_or(velocity, |scale| velocity.in_space(scale))),
+            })
         });
         rows.collect()
     }
@@ -187,9 +225,13 @@ fn smooth_object(rows: &mut [&mut TrajectoryRow], noise: &ProcessNoise) -> Resul
         let before = before.last_mut().filter(|row| row.accepted);
         if let (Some(before), Some(first)) = (before, states.first()) {
             before.state = before.time.map(|time| first.predicted(time, noise));
+            before.velocity_not_stated = None;
         }
         let known = from[..count].iter_mut().filter(|row| row.state().is_some());
-        known.zip(states).for_each(|(row, state)| row.state = Some(state));
+        known.zip(states).for_each(|(row, state)| {
+            row.state = Some(state);
+            row.velocity_not_stated = None;
+        });
     }
     Ok(())
 }

@@ -3,12 +3,15 @@ use std::io::{self, Write};
 use freeform_riccati::{CameraScale, MotionModel};
 
 use super::{
-    result_csv::text_cell,
+    not_stated::cell_of,
+    result::VELOCITY_NAMES,
+    result_csv::{text_cell, velocity_cells, velocity_columns},
     trajectory::{PoseAndMotion, Trajectory},
 };
 
-/// Writes a trajectory as CSV: one row per object and frame with pose and motion and their standard deviations. What is not known is empty.
-/// Positions and velocities are divided by a camera scale.
+/// Writes a trajectory as CSV: one row per object and frame with pose and motion and their standard deviations, the segment, the velocity of the middle
+/// of the object (`v1`, `v2`), why the frame was not accepted (`reason`), and which values are empty and why (`unstated`, as `angle ambiguous; omega
+/// ambiguous`). Positions and velocities are divided by a camera scale.
 ///
 /// # Errors
 ///
@@ -23,8 +26,10 @@ pub fn write_trajectory(
     let names = || Trajectory::pose_names(model).iter().chain(model.parameter_names());
     let mut header: Vec<String> = ["object", "frame", "time", "accepted"].map(str::to_owned).into();
     header.extend(names().flat_map(|name| [(*name).to_owned(), format!("{name}_std")]));
-    // The last column, so that those before it are where they always were.
+    // The last columns, so that those before them are where they always were.
     header.push("segment".to_owned());
+    header.extend(velocity_columns());
+    header.extend(["reason", "unstated"].map(str::to_owned));
     writer.write_record(&header).map_err(io::Error::from)?;
     for (row, known) in trajectory.rows().iter().zip(trajectory.poses(scale)) {
         let mut fields = vec![
@@ -33,15 +38,24 @@ pub fn write_trajectory(
             row.time.map_or_else(String::new, |time| time.to_string()),
             row.accepted.to_string(),
         ];
+        let values_from = fields.len();
+        let velocity = velocity_cells(known.as_ref().and_then(|known| known.velocity.as_ref()));
         match known {
-            Some(PoseAndMotion { pose, motion }) => {
+            Some(PoseAndMotion { pose, motion, .. }) => {
                 let pose = pose.iter().map(|p| [Some(p.value), Some(p.standard_deviation)]);
                 let numbers = pose.chain(motion.parameters().map(|p| [p.value, p.standard_deviation]));
                 fields.extend(numbers.flatten().map(finite));
             }
             None => fields.extend(std::iter::repeat_n(String::new(), 2 * names().count())),
         }
+        let values = fields[values_from..].iter().step_by(2).zip(names().copied());
+        let with_velocity = values.chain(velocity.iter().step_by(2).zip(VELOCITY_NAMES));
+        let empty = with_velocity.filter(|(cell, _)| cell.is_empty());
+        let unstated = cell_of(empty.map(|(_, name)| (name, row.why_unstated(name))));
         fields.push(row.segment.to_string());
+        fields.extend(velocity);
+        fields.push(row.rejection.as_ref().map_or_else(String::new, ToString::to_string));
+        fields.push(unstated);
         writer.write_record(&fields).map_err(io::Error::from)?;
     }
     writer.flush()

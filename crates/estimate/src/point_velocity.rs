@@ -41,6 +41,12 @@ impl PointVelocity {
 }
 
 impl MotionState {
+    /// Velocity of the middle of the object, the centroid of its outline.
+    #[must_use]
+    pub fn velocity_of_middle(&self) -> PointVelocity {
+        self.velocity_of(&(self.origin + self.radius * self.centroid.coords))
+    }
+
     /// Velocity of the point of the object that was at `first` in the first frame, in image coordinates. Its covariance includes the
     /// errors of motion and pose. Unobservable parameters enter with their present values.
     #[must_use]

@@ -84,6 +84,12 @@ impl PyObservation {
         self.inner.velocity.map(|inner| PyPointVelocity { inner })
     }
 
+    /// Why the velocity is not stated, as of the parameters; None where it is.
+    #[getter]
+    fn velocity_not_stated(&self) -> Option<&'static str> {
+        self.inner.velocity_not_stated().map(NotStated::name)
+    }
+
     /// Pose and motion in the image with their joint covariance (motion filter), the last known ones.
     #[getter]
     fn state(&self) -> Option<PyMotionState> {

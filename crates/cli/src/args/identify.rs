@@ -27,7 +27,8 @@ Examples:
   freeform identify frames/ --rectify plane.txt
   freeform identify outlines.csv --motion affine --svg parameters.svg --truth 0,1,-1,0,2,0
 
-A CSV file has a header frame,time,x,y and optional columns object and arc. The rows of an outline follow the contour. \
+A CSV file has a header frame,time,x,y and optional columns object, arc (open pieces of a partly hidden outline), contour (several closed contours \
+of one body, as holes) and deviation (how well a point is known). The rows of an outline follow the contour. \
 If the file begins with the comment lines of 'freeform simulate', the true motion in them is printed next to the result.
 
 If a row of CSV cannot be read, its line is named on standard error, the result is that of the frames before it, and the exit status is 2. The \
@@ -61,6 +62,9 @@ pub(crate) struct IdentifyArgs {
     pub(crate) json: bool,
 
     /// Write one row per frame with the parameters identified up to that frame
+    ///
+    /// With the filter v1 and v2 are the velocity of the middle of the object. The column reason says why a frame was not accepted, unstated
+    /// which values are empty and why, as in 'omega ambiguous; b1 ambiguous': ambiguous, unobservable or unknown.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) trace: Option<PathBuf>,
 
@@ -73,7 +77,8 @@ pub(crate) struct IdentifyArgs {
     /// while it is lost, and in a frame that is not an outline. The angle and the matrix are also empty while two turns explain
     /// the outlines. In a rejected frame the fields are the prediction. The column segment is a number that is counted up from 0
     /// where the object was given up and begun anew, and where a frame shows its turn for the first time: the turn between poses of
-    /// different segments is not known. Not available with the adaptive method.
+    /// different segments is not known. v1 and v2 are the velocity of the middle of the object. The column reason says why a frame was not
+    /// accepted, unstated which values are empty and why, as in --trace. Not available with the adaptive method.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) trajectory: Option<PathBuf>,
 

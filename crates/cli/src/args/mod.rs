@@ -17,7 +17,10 @@ mod values;
 
 use std::path::PathBuf;
 
-use clap::{Args, CommandFactory, FromArgMatches as _, Parser, Subcommand, error::ErrorKind};
+use clap::{
+    Args, CommandFactory, FromArgMatches as _, Parser, Subcommand,
+    error::{ContextKind, ContextValue, ErrorKind},
+};
 
 pub(crate) use evaluate::{EvaluateArgs, EvaluateFormat};
 pub(crate) use fit::{FitArgs, FitFormat};
@@ -116,7 +119,7 @@ pub(crate) fn parse() -> Result<Cli, Failure> {
             let _ = error.print();
             Failure::unusable("a command is missing")
         }
-        _ => Failure::unusable(one_line(&error.render().to_string())),
+        _ => Failure::unusable(with_tip(&error, one_line(&error.render().to_string()))),
     })
 }
 
@@ -144,6 +147,24 @@ pub(crate) fn takes_next(argument: &str) -> bool {
         let short = option.get_short().map(|name| format!("-{name}"));
         option.get_action().takes_values() && long.into_iter().chain(short).any(|name| name == argument)
     })
+}
+
+/// With the command that has an option which another does not know, in place of how to pass its name as a value.
+fn with_tip(error: &clap::Error, message: String) -> String {
+    let Some(ContextValue::String(argument)) = error.get(ContextKind::InvalidArg) else { return message };
+    if error.kind() != ErrorKind::UnknownArgument || message.contains("a similar argument") {
+        return message;
+    }
+    let definition = definition();
+    let has_it = |command: &&clap::Command| {
+        command.get_arguments().any(|option| option.get_long().is_some_and(|long| argument == &format!("--{long}")))
+    };
+    let commands: Vec<_> = definition.get_subcommands().filter(has_it).map(clap::Command::get_name).collect();
+    if commands.is_empty() {
+        return message;
+    }
+    let said = message.split("; tip:").next().unwrap_or_default();
+    format!("{said}; tip: it is an option of freeform {}", commands.join(" and "))
 }
 
 /// What clap says, without the usage that it prints below.

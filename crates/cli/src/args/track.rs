@@ -13,8 +13,9 @@ Examples:
   camera-outlines | freeform track --motion rigid | jq .parameters.omega.value
 
 Each line of the output is one JSON object with the fields schema, object, frame, time, phase, accepted, parameters, \
-generator, velocity (of the middle of the object), reason (why the frame was not accepted, or null) and ambiguity (other turns that explain \
-the outlines as well, or null). The phases are acquiring, tracking and lost for the \
+generator, velocity (of the middle of the object), reason (why the frame was not accepted, or null), ambiguity (other turns that explain \
+the outlines as well, or null) and unstated (the parameters and the velocity that have no value, each with why: ambiguous, unobservable or \
+unknown; generator is null where a parameter is). The phases are acquiring, tracking and lost for the \
 filter, start and adapt for the adaptive method. The last line of an object that was in none of the last 1000 frames has the \
 phase closed; the object is then forgotten.
 

@@ -33,6 +33,7 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     interrupt::listen();
     let name = input.name.clone();
     let in_doubt = input.pictures().is_some_and(PictureInput::may_mistake_one_for_another) && !args.quiet;
+    let stated = (following.settings().method(), following.settings().motion());
     let mut sink = Sink::stdout();
     let mut accepted = 0_u64;
     let mut first_reason = None;
@@ -55,7 +56,7 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
         }
         accepted += u64::from(observation.is_accepted());
         first_reason = first_reason.take().or_else(|| observation.rejection.clone());
-        write_line(&mut sink, &track_line(observation).map_err(Failure::unusable)?)
+        write_line(&mut sink, &track_line(observation, stated).map_err(Failure::unusable)?)
     })?;
     if in_doubt {
         following.results().into_iter().for_each(warn_of_two_frames);

@@ -6,7 +6,7 @@ use freeform_motion::estimate::{MotionEstimate, ParameterEstimate};
 use freeform_motion::outline_filter::{Ambiguity, DynamicsWeights, PlaneAmbiguity};
 use freeform_motion::outline_io::TracingWarning;
 use freeform_motion::riccati::CameraScale;
-use freeform_motion::tracker::{MotionFamily, NotStated, ObjectPhase, ObjectResult, Observation};
+use freeform_motion::tracker::{Method, MotionFamily, NotStated, ObjectPhase, ObjectResult, Observation};
 use serde::ser::{Serialize, SerializeMap, SerializeStruct, Serializer};
 
 use super::plane_json::{NormalJson, PlanesJson};
@@ -34,7 +34,10 @@ pub(crate) fn write_identify_json(
 }
 
 /// One frame as one line of JSON, without its end.
-pub(crate) fn track_line(observation: &Observation) -> serde_json::Result<String> {
+pub(crate) fn track_line(
+    observation: &Observation,
+    (method, family): (Method, MotionFamily),
+) -> serde_json::Result<String> {
     let estimate = observation.estimate.as_ref();
     serde_json::to_string(&TrackLine {
         schema: "freeform.track/1",
@@ -51,6 +54,11 @@ pub(crate) fn track_line(observation: &Observation) -> serde_json::Result<String
         normal: observation.plane.as_deref().map(NormalJson::from),
         reason: observation.rejection.as_ref().map(ToString::to_string),
         ambiguity: ambiguity_json(observation.ambiguity.as_ref(), observation.plane_ambiguity.as_deref()),
+        unstated: Unstated::of(
+            family,
+            |name| observation.not_stated(name),
+            observation.velocity_not_stated().filter(|_| family.has_velocity(method)),
+        ),
     })
 }
 
@@ -71,6 +79,7 @@ pub(crate) fn closing_line(Left { seen, result }: &Left) -> serde_json::Result<S
         normal: result.plane.as_deref().map(NormalJson::from),
         reason: Some("not seen for long, and forgotten".to_owned()),
         ambiguity: ambiguity_json(result.ambiguity.as_ref(), result.plane_ambiguity.as_deref()),
+        unstated: Unstated::of_result(result),
     })
 }
 
@@ -128,6 +137,28 @@ struct TrackLine<'a> {
     normal: Option<NormalJson>,
     reason: Option<String>,
     ambiguity: Option<EitherAmbiguity<'a>>,
+    unstated: Unstated,
+}
+
+/// Parameters and velocity that are not stated, by their names, with the word that says why.
+struct Unstated(Vec<(&'static str, NotStated)>);
+
+impl Unstated {
+    fn of(family: MotionFamily, why: impl Fn(&str) -> Option<NotStated>, velocity: Option<NotStated>) -> Self {
+        let parameters = family.parameter_names().iter().filter_map(|name| Some((*name, why(name)?)));
+        Self(parameters.chain(velocity.map(|reason| ("velocity", reason))).collect())
+    }
+
+    fn of_result(result: &ObjectResult) -> Self {
+        let velocity = result.velocity_not_stated().filter(|_| result.has_velocity());
+        Self::of(result.motion, |name| result.not_stated(name), velocity)
+    }
+}
+
+impl Serialize for Unstated {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, reason)| (name, reason.name())))
+    }
 }
 
 /// Turns of an object of the picture, or motions of a plane in space.
@@ -164,7 +195,7 @@ impl Serialize for ObjectJson<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Self(result) = self;
         let mut object =
-            serializer.serialize_struct("Object", if result.motion == MotionFamily::Plane { 12 } else { 11 })?;
+            serializer.serialize_struct("Object", if result.motion == MotionFamily::Plane { 13 } else { 12 })?;
         object.serialize_field("object", &result.object)?;
         object.serialize_field("method", result.method.name())?;
         object.serialize_field("motion", &result.motion.to_string())?;
@@ -187,6 +218,7 @@ impl Serialize for ObjectJson<'_> {
         object.serialize_field("dynamics", &result.dynamics.map(DynamicsJson::from))?;
         let warnings: Vec<WarningJson> = result.warnings.iter().map(WarningJson::from).collect();
         object.serialize_field("warnings", &warnings)?;
+        object.serialize_field("unstated", &Unstated::of_result(result))?;
         object.end()
     }
 }
@@ -304,7 +336,6 @@ fn generator_rows(estimate: &MotionEstimate) -> Option<[[f64; 3]; 3]> {
 #[cfg(test)]
 mod tests {
     use freeform_motion::riccati::MotionModel;
-    use freeform_motion::tracker::Method;
     use serde_json::{Value, json};
 
     use super::*;

@@ -26,6 +26,13 @@ fn a_mistyped_option_is_told_on_one_line_with_the_one_that_may_be_meant() {
 }
 
 #[test]
+fn an_option_of_another_command_is_told_with_that_command() {
+    let output = run("track outlines.csv --trajectory poses.csv", "");
+    let expected = "freeform: unexpected argument '--trajectory' found; tip: it is an option of freeform identify\n";
+    assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(2), expected));
+}
+
+#[test]
 fn the_version_is_that_of_the_package() {
     assert_eq!(succeed("--version", ""), format!("freeform {}\n", env!("CARGO_PKG_VERSION")));
 }

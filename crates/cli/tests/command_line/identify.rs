@@ -19,7 +19,7 @@ fn the_json_has_the_fields_of_the_contract_and_says_what_b_is_and_what_was_left_
     assert_eq!(keys(&document["left_out"]), ["count", "pictures"]);
     let object = &document["objects"][0];
     let fields = ["frames", "frames_rejected", "generator", "method", "motion", "object", "parameters", "warnings"];
-    let mut with_later_ones = [&["ambiguity", "dynamics", "velocity"][..], &fields].concat();
+    let mut with_later_ones = [&["ambiguity", "dynamics", "unstated", "velocity"][..], &fields].concat();
     with_later_ones.sort_unstable();
     assert_eq!(keys(object), with_later_ones);
     assert_eq!((&object["ambiguity"], keys(&object["velocity"])), (&Value::Null, vec!["point", "std", "value"]));

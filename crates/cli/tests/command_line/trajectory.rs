@@ -19,14 +19,17 @@ fn number(rows: &[Vec<String>], row: usize, column: &str) -> f64 {
 #[test]
 fn the_trajectory_has_one_row_per_object_and_frame_with_pose_and_motion() {
     let rows = trajectory("", &(sequence("") + "20,5.0,1,1\n"));
-    let header =
-        "object,frame,time,accepted,angle,angle_std,x,x_std,y,y_std,omega,omega_std,b1,b1_std,b2,b2_std,segment";
+    let header = "object,frame,time,accepted,angle,angle_std,x,x_std,y,y_std,omega,omega_std,b1,b1_std,b2,b2_std,segment,\
+                  v1,v1_std,v2,v2_std,reason,unstated";
     assert_eq!(rows[0].join(","), header);
     assert_eq!(rows.len(), 1 + 16);
-    assert!(rows.iter().all(|row| row.len() == rows[0].len()));
+    assert!(rows[..16].iter().all(|row| row.len() == rows[0].len()));
     // Nothing is known of the motion in the first frame, and nothing of a frame that is no outline.
-    assert_eq!(rows[1].join(","), format!("0,0,0,true{},0", ",".repeat(12)));
-    assert_eq!(rows[16].join(","), format!("0,20,,false{},0", ",".repeat(12)));
+    let all = "angle unknown; x unknown; y unknown; omega unknown; b1 unknown; b2 unknown; v1 unknown; v2 unknown";
+    assert_eq!(rows[1].join(","), format!("0,0,0,true{},0,,,,,,{all}", ",".repeat(12)));
+    let no_outline = rows[16].join(",");
+    assert!(no_outline.starts_with(&format!("0,20,,false{},0,,,,,", ",".repeat(12))), "{no_outline}");
+    assert!(no_outline.contains("frame 20") && no_outline.ends_with(all), "{no_outline}");
     for row in 2..=15 {
         let (angle, std) = (number(&rows, row, "angle"), number(&rows, row, "angle_std"));
         let truth = std::f64::consts::FRAC_PI_2 * (row - 1) as f64 / 30.0;
@@ -73,7 +76,10 @@ fn other_models_have_trajectories_too() {
     ] {
         let rows = trajectory(options, &csv);
         assert!(rows[0].join(",").contains(&format!("accepted,{pose}")), "{options}: {:?}", rows[0]);
-        assert!(rows[15].iter().skip(4).all(|field| field.parse::<f64>().is_ok_and(f64::is_finite)), "{options}");
+        assert!(
+            rows[15][4..rows[15].len() - 2].iter().all(|field| field.parse::<f64>().is_ok_and(f64::is_finite)),
+            "{options}"
+        );
     }
 }
 
@@ -125,5 +131,75 @@ fn what_cannot_be_had_is_wrong_usage() {
         let output = run(&format!("identify - {options}"), &sequence(""));
         assert_eq!(output.status.code(), Some(2), "{options}");
         assert!(stderr(&output).contains(reason), "{}", stderr(&output));
+    }
+}
+
+/// Rows of a table that `identify` writes, cells by the names of their columns.
+fn cells_of(option: &str, options: &str, csv: &str) -> Vec<Vec<(String, String)>> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("table.csv");
+    succeed(&format!("identify - --quiet {option} {} {options}", path.display()), csv);
+    let text = fs::read_to_string(path).expect("a table");
+    let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
+    let header = lines.next().expect("a header");
+    lines.map(|cells| header.iter().cloned().zip(cells).collect()).collect()
+}
+
+#[test]
+fn every_value_that_is_empty_in_an_accepted_frame_has_a_reason_beside_it() {
+    let circle = succeed("simulate --shape circle --dynamics velocity --omega 2 --velocity 10,0 --seconds 0.4", "");
+    for (option, options) in
+        [("--trace", ""), ("--trajectory", ""), ("--trajectory", "--smooth"), ("--trace", "--motion affine")]
+    {
+        for csv in [&circle, &sequence("")] {
+            let rows = cells_of(option, options, csv);
+            let mut words = std::collections::BTreeSet::new();
+            for (number, row) in rows.iter().enumerate() {
+                let cell = |name: &str| row.iter().find(|(column, _)| column == name).map_or("", |(_, cell)| cell);
+                assert_eq!((cell("accepted"), cell("reason")), ("true", ""), "{number}");
+                let given: Vec<_> = cell("unstated").split("; ").filter_map(|reason| reason.split_once(' ')).collect();
+                let values =
+                    row.iter().filter(|(name, _)| row.iter().any(|(other, _)| *other == format!("{name}_std")));
+                let empty: Vec<_> = values.filter(|(_, cell)| cell.is_empty()).map(|(name, _)| name.as_str()).collect();
+                assert_eq!(
+                    given.iter().map(|(name, _)| *name).collect::<Vec<_>>(),
+                    empty,
+                    "{option} {options} {number}"
+                );
+                words.extend(given.iter().map(|(_, word)| (*word).to_owned()));
+            }
+            let is_hidden = csv == &circle;
+            assert_eq!(words.contains("unobservable"), is_hidden, "{option} {options}: {words:?}");
+        }
+    }
+    // The lines of a stream say the same, also where all parameters are null.
+    let lines: Vec<_> = succeed("track -", &circle).lines().map(json).collect();
+    assert!(lines[0]["parameters"].is_null() && lines[0]["velocity"].is_null());
+    for name in ["omega", "b1", "b2", "velocity"] {
+        assert_eq!(lines[0]["unstated"][name], "unknown", "{name}");
+    }
+    let last = lines.last().expect("lines");
+    assert_eq!(last["unstated"]["omega"], "unobservable");
+    assert!(last["unstated"]["velocity"].is_null());
+}
+
+#[test]
+fn the_velocity_of_the_middle_is_in_the_tables_as_in_json() {
+    let csv = sequence("");
+    let result = json(&succeed("identify - --json", &csv));
+    let velocity = &result["objects"][0]["velocity"];
+    for option in ["--trace", "--trajectory"] {
+        let rows = cells_of(option, "", &csv);
+        let cell = |name: &str| {
+            let row = rows.last().expect("rows");
+            row.iter().find(|(column, _)| column == name).expect("a column").1.parse::<f64>().expect("a number")
+        };
+        for (i, name) in ["v1", "v2"].into_iter().enumerate() {
+            let [value, deviation] = ["value", "std"].map(|of| velocity[of][i].as_f64().expect("a number"));
+            assert!(
+                (cell(name) - value).abs() < 1e-9 && (cell(&format!("{name}_std")) - deviation).abs() < 1e-9,
+                "{option} {name}"
+            );
+        }
     }
 }

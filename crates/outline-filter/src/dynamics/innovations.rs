@@ -4,6 +4,8 @@
 //! make them larger, or dependent. The variance of a weighted mean of a stationary series is its long-run variance, over the number of
 //! its members; it is estimated by prewhitening and equal-weighted cosines (E. Lazarus, D. Lewis, J. Stock and M. Watson, HAR inference:
 //! Recommendations for practice, 2018).
+use std::ops::Range;
+
 use nalgebra::SVector;
 
 use crate::tuning::innovations as tuning;
@@ -107,7 +109,7 @@ impl<const N: usize> InnovationSeries<N> {
         if self.frames < tuning::FEWEST_CORRELATED || count <= tuning::SLOW {
             return none;
         }
-        let drift = self.slow_squares() / self.frames as f64;
+        let drift = self.slow_squares(0..0) / self.frames as f64;
         let squares: f64 = (0..N).map(|i| (self.squares[i] - drift[i]).max(0.0)).sum();
         let correlation = if squares > 0.0 { (self.products - drift).sum() / squares } else { 0.0 };
         if !self.is_dependent(correlation, N) {
@@ -117,10 +119,16 @@ impl<const N: usize> InnovationSeries<N> {
         long_run.map(|variance| (tuning::STUDENT.powi(2) * variance).max(1.0))
     }
 
-    /// Squares of the sums of the components, and of their first cosines.
-    fn slow_squares(&self) -> SVector<f64, N> {
-        let mean: SVector<f64, N> = self.blocks.iter().sum();
-        let slow = cosine_projections(self.blocks.iter().copied(), self.blocks.len(), 1);
+    /// Squares of the sums of the components, and of their first cosines; some of the blocks left out.
+    fn slow_squares(&self, left_out: Range<usize>) -> SVector<f64, N> {
+        let blocks = || {
+            let of_block = |(i, block): (usize, &SVector<f64, N>)| {
+                if left_out.contains(&i) { SVector::zeros() } else { *block }
+            };
+            self.blocks.iter().enumerate().map(of_block)
+        };
+        let mean: SVector<f64, N> = blocks().sum();
+        let slow = cosine_projections(blocks(), self.blocks.len(), 1);
         let squares = slow[..tuning::SLOW].iter().map(|p| 2.0 * p.component_mul(p));
         squares.fold(mean.component_mul(&mean), |sum, square| sum + square)
     }
@@ -128,11 +136,28 @@ impl<const N: usize> InnovationSeries<N> {
     /// How much larger the slow part of each component is than that of a white series of unit variance, in deviations: of the sum of the
     /// squares of its mean and first cosines, by Fisher's approximation of the chi-square distribution.
     pub(crate) fn slow_part(&self) -> SVector<f64, N> {
-        if self.frames < tuning::FEWEST_CORRELATED || self.blocks.len() <= tuning::SLOW {
+        self.slow_part_without(0..0)
+    }
+
+    /// As [`slow_part`](Self::slow_part), were any one stretch as the others are: what follows from a map that was learnt in wrong poses, before
+    /// the motion was known or after a sudden change of it, is in one alone.
+    pub(crate) fn lasting_slow_part(&self) -> SVector<f64, N> {
+        let count = self.blocks.len();
+        let stretch = count.div_ceil(tuning::STRETCHES).max(1);
+        let stretches = (0..count).step_by(stretch).map(|from| from..(from + stretch).min(count));
+        stretches.map(|stretch| self.slow_part_without(stretch)).fold(self.slow_part(), |least, part| least.inf(&part))
+    }
+
+    fn slow_part_without(&self, left_out: Range<usize>) -> SVector<f64, N> {
+        let count = self.blocks.len();
+        if self.frames < tuning::FEWEST_CORRELATED || count <= tuning::SLOW {
             return SVector::zeros();
         }
-        let of_chance = (2.0 * (tuning::SLOW + 1) as f64 - 1.0).sqrt();
-        (self.slow_squares() / self.frames as f64).map(|sum| (2.0 * sum).sqrt() - of_chance)
+        let by_chance = (2.0 * (tuning::SLOW + 1) as f64 - 1.0).sqrt();
+        let kept = 1.0 - left_out.len() as f64 / count as f64;
+        let frames = self.frames as f64;
+        // Squares of sums over the frames that are kept; over all of them they would be larger by the square of their share.
+        (self.slow_squares(left_out) / (kept * kept * frames)).map(|sum| (2.0 * sum).sqrt() - by_chance)
     }
 
     /// Correlation of neighbours in time, over k components.
@@ -248,6 +273,22 @@ mod tests {
             let expected = ((1.0 + correlation) / (1.0_f64 - correlation)).sqrt();
             let found = factor(correlation, frames);
             assert!((0.8..2.0).contains(&(found / expected)), "{correlation} {frames}: {found} {expected}");
+        }
+    }
+
+    #[test]
+    fn a_slow_part_lasts_that_is_not_in_one_stretch_alone() {
+        let mut rng = ChaCha8Rng::seed_from_u64(5);
+        for (shown_in, lasts) in [(0..120, true), (0..15, false), (60..75, false), (0..0, false)] {
+            let mut series = InnovationSeries::<1>::default();
+            let size = if shown_in.len() > 60 { 1.2 } else { 4.0 };
+            for t in 0..120 {
+                let noise: f64 = StandardNormal.sample(&mut rng);
+                let slow = if shown_in.contains(&t) { size * (0.05 * f64::from(t)).cos() } else { 0.0 };
+                series.add(&SVector::from([noise + slow]), 1);
+            }
+            assert_eq!(series.slow_part()[0] > 5.0, !shown_in.is_empty(), "{shown_in:?}");
+            assert_eq!(series.lasting_slow_part()[0] > 5.0, lasts, "{shown_in:?}: {}", series.lasting_slow_part());
         }
     }
 }

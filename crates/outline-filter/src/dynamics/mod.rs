@@ -12,6 +12,7 @@ mod correction;
 mod course;
 mod dynamics_filter;
 mod family;
+mod family_fit;
 mod hypothesis;
 mod innovations;
 mod interacting;

@@ -78,7 +78,7 @@ impl MotionFilter {
             all = all.widened(model, &centroid, &CentredDeviations::from_element(1.0), [&pose, &motion])?;
         }
         // Edges may move points by as much, and that is in the deviations already.
-        let family = unmodelled.family.filter(|_| displacement > edge_uncertainty);
+        let family = unmodelled.family.filter(|_| unmodelled.is_told && displacement > edge_uncertainty);
         Some(Statement { random, all, family })
     }
 

@@ -61,11 +61,12 @@ impl Track {
 
     /// What the outlines do beside their motion, as far as it is told.
     pub(super) fn unmodelled_estimate(&self) -> UnmodelledEstimate {
-        let mut estimate = *self.family.estimate(self.belief.model);
-        if estimate.family.is_none()
+        let of_side = self.noise.rounding().of_side();
+        let mut estimate = *self.family.estimate(self.belief.model, of_side);
+        if !estimate.is_told
             && let Some(displacement) = self.change_of_shape()
         {
-            (estimate.family, estimate.displacement) = (Some(WrongFamily::Shape), displacement);
+            estimate.add_change_of_shape(displacement, true);
         }
         // An outline that is hardly out of round changes by as much as that as it turns, which is not followed where it is not seen.
         let may_be_turn = estimate.family.is_some_and(|family| family != WrongFamily::Growth) && self.turn_is_unseen();

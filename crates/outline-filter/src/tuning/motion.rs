@@ -147,6 +147,9 @@ pub(crate) mod innovations {
     pub(crate) const COSINES: usize = 8;
     /// Cosines that changes are slow up to.
     pub(crate) const SLOW: usize = 4;
+    /// Stretches of a series of which any one may be left out: the first frames, and those after a change of motion, are no more than a quarter of a
+    /// recording that tells of a slow change.
+    pub(crate) const STRETCHES: usize = 4;
     /// Half width of a 95 % interval of Student's distribution for eight degrees of freedom over that of a normal one, 2.306 / 1.960.
     pub(crate) const STUDENT: f64 = 1.177;
     /// Fewest frames that say something of dependence.
@@ -192,6 +195,12 @@ pub(crate) mod family {
     pub(crate) const SHAPE_CHANGES: f64 = 4.0;
     /// Eigenvalue of the correlations of motions that are left out below which a combination of them is not told.
     pub(crate) const TOLD_APART: f64 = 1e-4;
+    /// What is added to the correlations of the motions in a single frame, so that combinations it hardly tells say nothing of the scatter.
+    pub(crate) const HARDLY_TOLD: f64 = 1e-3;
+    /// Numbers that the assumption of a scatter by noise alone is worth: those of eight frames.
+    pub(crate) const PRIOR_SCATTER: f64 = 72.0;
+    /// Share of the frames that must tell a motion for those that do not show it to speak against it.
+    pub(crate) const MOST_TELL: f64 = 0.5;
     /// Share of the square of a displacement that must be left of it in a frame to say something: a tenth of the displacement.
     pub(crate) const LEFT: f64 = 0.01;
     /// What makes the equations of the pose solvable where the outline does not, as a share of the largest entry.

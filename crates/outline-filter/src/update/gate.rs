@@ -286,7 +286,11 @@ impl fmt::Display for Rejection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::AgreementTooSmall { agreement, .. } => {
-                write!(f, "does not fit the object, {:.0} % of the points lie on its outline", 100.0 * agreement)
+                write!(
+                    f,
+                    "does not fit the object where it was expected, {:.0} % of the points lie on its outline",
+                    100.0 * agreement
+                )
             }
             Self::InnovationTooLarge { innovation, .. } => {
                 let deviations = innovation.sqrt();

@@ -28,5 +28,6 @@ mod recording;
 mod saved_state;
 mod seen_aslant;
 mod thrown_bodies;
+mod uneven_motion;
 mod washers;
 mod wrong_families;
