@@ -7,6 +7,7 @@ mod blur_width;
 mod crossings;
 mod edge_profile;
 mod fitting;
+mod sampler;
 mod step_fit;
 mod systematic;
 
@@ -14,11 +15,11 @@ use freeform_curve_fit::isoline::Crossing;
 use image::GrayImage;
 use nalgebra::{Point2, Vector2};
 
-use crate::contrast::{Contrast, signal};
+use crate::contrast::Contrast;
 pub use edge_profile::{EdgeProfile, SoughtEdges};
 
 use crossings::{Moved, undo_crossings};
-use step_fit::StepFit;
+use sampler::Sampler;
 
 /// Width of the edges before it is known, in pixels.
 const FIRST_WIDTH: f64 = 1.2;
@@ -99,17 +100,6 @@ struct Edge {
 }
 
 impl EdgeSource<'_> {
-    /// Grey value between the pixels, on a scale where objects are lighter.
-    #[inline]
-    fn value(&self, place: Point2<f64>) -> f64 {
-        interpolated(self.picture, place, |pixel| f64::from(signal(pixel, self.contrast)))
-    }
-
-    fn profile(&self, place: Point2<f64>, normal: Vector2<f64>, fit: &StepFit, values: &mut Vec<f64>) {
-        values.clear();
-        values.extend(fit.offsets().map(|s| self.value(place + s * normal)));
-    }
-
     /// Moves a closed line of crossings, given from the left upper pixel of a window, onto the edges. `None`, and the line as it was, where
     /// it has no edges.
     pub(crate) fn refine(&self, line: &mut [Crossing], place: [usize; 2]) -> Option<EdgeFit> {
@@ -124,7 +114,7 @@ impl EdgeSource<'_> {
         let at = |c: &Crossing| Point2::new(left as f64 + c.x, top as f64 + c.y);
         let points: Vec<Point2<f64>> = line.iter().map(at).collect();
         let normals: Vec<Option<Vector2<f64>>> = (0..line.len()).map(|i| outward(line, i)).collect();
-        let (edges, fit) = self.fitted(&points, &normals)?;
+        let (edges, fit) = Sampler::new(self.picture, self.contrast).fitted(&points, &normals)?;
         let width = fit.width();
         let own = |i: &usize| normals[*i].is_some();
         let all: Vec<usize> = (0..line.len()).filter(own).collect();
@@ -214,9 +204,13 @@ fn leave_out_strays(edges: &[Edge], is_clear: &mut [bool], farthest: f64) {
     let strays: Vec<usize> = (0..count)
         .filter(|&i| is_clear[i])
         .filter(|&i| {
-            let around = (0..=2 * reach).map(|k| (i + count + k - reach) % count).filter(|&j| is_clear[j]);
-            let middle = median(around.map(|j| edges[j].place)).unwrap_or(0.0);
-            (edges[i].place - middle).abs() > farthest
+            let first = i + count - reach;
+            let around =
+                (first..=first + 2 * reach).map(|k| k % count).filter(|&j| is_clear[j]).map(|j| edges[j].place);
+            // Where they lie no farther apart than that, none does from the one in the middle.
+            let [low, high] =
+                around.clone().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)]);
+            high - low > farthest && (edges[i].place - median(around).unwrap_or(0.0)).abs() > farthest
         })
         .collect();
     strays.into_iter().for_each(|i| is_clear[i] = false);
@@ -263,9 +257,11 @@ fn smoothed(places: &[f64], sigma: f64) -> Vec<f64> {
     let weights: Vec<f64> =
         (0..=2 * reach).map(|k| (-0.5 * ((k as f64 - reach as f64) / sigma).powi(2)).exp()).collect();
     let total: f64 = weights.iter().sum();
-    let at =
-        |i: usize| weights.iter().enumerate().map(|(k, w)| w * places[(i + count + k - reach) % count]).sum::<f64>();
-    (0..count).map(|i| at(i) / total).collect()
+    // All the way round and on, as far as windows reach.
+    let (before, after) = (&places[count - reach..], &places[..reach]);
+    let around: Vec<f64> = before.iter().chain(places).chain(after).copied().collect();
+    let mean = |window: &[f64]| window.iter().zip(&weights).map(|(place, weight)| weight * place).sum::<f64>() / total;
+    around.windows(weights.len()).map(mean).collect()
 }
 
 /// How far the edges of a bent outline lie outside of where the middle grey value is: `w^2 / 2` times the curvature.
