@@ -7,6 +7,7 @@ mod blur_width;
 mod crossings;
 mod edge_profile;
 mod fitting;
+mod on_pixels;
 mod sampler;
 mod step_fit;
 mod systematic;
@@ -55,6 +56,13 @@ pub(crate) const OF_POINT: f64 = 0.01;
 /// Standard deviation of the Gaussian that heights of steps are smoothed by along the contour, in points.
 const STEPS_TOGETHER: f64 = 4.0;
 
+/// Share of points between two pixels from which on edges are those of pixels: far beyond what random places have, and what is hidden by
+/// details that are as small as pixels is left to the object.
+const MOST_ON_PIXELS: f64 = 0.7;
+
+/// Deviation of a number that is rounded to a whole one.
+const ROUNDED_TO_PIXELS: f64 = 0.288_675;
+
 /// What the edges of an outline are like, and how well they tell its place.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EdgeFit {
@@ -62,7 +70,8 @@ pub struct EdgeFit {
     /// of a place told by one pixel of contour. Of a point without an edge of its own, which lies between its neighbours', larger.
     pub deviations: Vec<f64>,
     /// Systematic uncertainty of the outline, in its unit: how far edges may lie off together along a side of it, by the grid of pixels, the
-    /// rounding of grey values, and light that changes on one side of the edge.
+    /// rounding of grey values, and light that changes on one side of the edge; of edges that are [those of pixels](Self::is_on_pixels) their
+    /// rounding too.
     pub systematic: f64,
     /// Median height of the step, in grey values; positive.
     pub contrast: f64,
@@ -72,6 +81,24 @@ pub struct EdgeFit {
     pub noise: f64,
     /// Share of the points that have an edge of their own.
     pub clear_share: f64,
+    /// Share of the points whose edge lies between two pixels, neither of which shows a part of the step: nearly all where the object is drawn
+    /// without anti-aliasing, up to a third where it is drawn with it, hardly any in pictures of a camera.
+    pub on_pixels: f64,
+}
+
+impl EdgeFit {
+    /// Whether the edges are those of pixels: where they are rounded to, and not where the object has them.
+    #[must_use]
+    pub fn is_on_pixels(&self) -> bool {
+        self.on_pixels > MOST_ON_PIXELS
+    }
+
+    /// With what such edges are off by, if they are: a side may lie off by half a pixel either way.
+    fn with_rounding(self, on_pixels: f64) -> Self {
+        let fit = Self { on_pixels, ..self };
+        let rounding = if fit.is_on_pixels() { ROUNDED_TO_PIXELS } else { 0.0 };
+        Self { systematic: fit.systematic.hypot(rounding), ..fit }
+    }
 }
 
 /// What is looked at of a picture.
@@ -103,10 +130,11 @@ impl EdgeSource<'_> {
     /// Moves a closed line of crossings, given from the left upper pixel of a window, onto the edges. `None`, and the line as it was, where
     /// it has no edges.
     pub(crate) fn refine(&self, line: &mut [Crossing], place: [usize; 2]) -> Option<EdgeFit> {
+        let on_pixels = on_pixels::share(self.picture, line, place);
         let (fit, moved) = self.move_onto_edges(line, place)?;
         // The normals of a ragged line that is far from the edges are not those of the edges.
         let again = if moved == Moved::NotEverywhere { self.move_onto_edges(line, place) } else { None };
-        Some(again.map_or(fit, |(fit, _)| fit))
+        Some(again.map_or(fit, |(fit, _)| fit).with_rounding(on_pixels))
     }
 
     /// As [`refine`](Self::refine), along the normals that the line has.
@@ -162,7 +190,7 @@ impl EdgeSource<'_> {
             crossing.x = (crossing.x + (moved.x - before.x)).clamp(-0.5 - left as f64, right - left as f64);
             crossing.y = (crossing.y + (moved.y - before.y)).clamp(-0.5 - top as f64, lower - top as f64);
         }
-        Some((EdgeFit { deviations, systematic, contrast, blur: width, noise, clear_share }, result))
+        Some((EdgeFit { deviations, systematic, contrast, blur: width, noise, clear_share, on_pixels: 0.0 }, result))
     }
 }
 
