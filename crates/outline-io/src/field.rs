@@ -17,8 +17,7 @@ impl Field {
         wanted: WantedHoles,
         most: usize,
     ) -> Result<Option<LargestLines>, LineTooLong> {
-        let value = |x: usize, y: usize| f64::from(self.values[y * self.width + x]);
-        isoline::largest_of_samples([self.width, self.height], value, level, wanted, most)
+        isoline::largest_of_samples([self.width, self.height], &self.values, level, wanted, most)
     }
 
     /// Indices of the samples above, below and beside a sample, as far as the grid goes.

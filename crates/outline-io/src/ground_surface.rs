@@ -45,30 +45,43 @@ pub(crate) fn ground_surface(picture: &GrayImage) -> GrayImage {
         let y = unit(row, height);
         let constant = (surface[0] + surface[2] * y + surface[5] * y * y + 0.5) as f32;
         let (slope, bend) = ((surface[1] + surface[4] * y) as f32, surface[3] as f32);
-        // The conversion keeps to 0 to 255.
-        values.extend(columns.iter().map(|x| (constant + x * (slope + bend * x)) as u8));
+        values.extend(columns.iter().map(|x| whole_grey_value(constant + x * (slope + bend * x))));
     }
     GrayImage::from_raw(width, height, values).unwrap_or_default()
 }
 
+/// The whole part of a number, kept to 0 to 255: what `as` says, which is worked out one number after the other.
+#[inline(always)]
+fn whole_grey_value(number: f32) -> u8 {
+    // Numbers that this is added to are rounded to whole ones, which are in the last bits of the sum.
+    const ROUNDS: f32 = (1_u32 << (f32::MANTISSA_DIGITS - 1)) as f32;
+    let kept = if number > 0.0 { number } else { 0.0 };
+    let kept = if kept < 255.0 { kept } else { 255.0 };
+    let nearest = (kept + ROUNDS) - ROUNDS;
+    let whole = if nearest > kept { nearest - 1.0 } else { nearest };
+    (whole + ROUNDS).to_bits() as u8
+}
+
 /// The surface that fits the samples best, those with large residuals left out.
 fn solved(samples: &[(SVector<f64, 6>, f64)], residuals: &[f64], scale: f64) -> Option<SVector<f64, 6>> {
-    let (mut normal, mut right) = (SMatrix::<f64, 6, 6>::identity() * 1e-9, SVector::<f64, 6>::zeros());
+    // Of the matrix, which is symmetric, what lies above the diagonal is not looked at where it is factored.
+    let (mut columns, mut right) = ([[0.0; 6]; 6], [0.0; 6]);
+    (0..6).for_each(|k| columns[k][k] = 1e-9);
     for ((terms, value), residual) in samples.iter().zip(residuals) {
         let residual = residual / scale;
         if residual.abs() < 1.0 {
             let weight = (1.0 - residual * residual).powi(2);
-            let weighted = weight * terms;
-            // What lies above the diagonal is not looked at where the matrix is factored.
-            for column in 0..6 {
-                for row in column..6 {
-                    normal[(row, column)] += weighted[row] * terms[column];
-                }
+            let terms: [f64; 6] = (*terms).into();
+            let weighted = terms.map(|term| weight * term);
+            for (column, term) in columns.iter_mut().zip(terms) {
+                column.iter_mut().zip(weighted).for_each(|(sum, weighted)| *sum += weighted * term);
             }
-            right += weight * *value * terms;
+            let weight = weight * *value;
+            right.iter_mut().zip(terms).for_each(|(sum, term)| *sum += weight * term);
         }
     }
-    Some(normal.cholesky()?.solve(&right))
+    let normal = SMatrix::<f64, 6, 6>::from_fn(|row, column| columns[column][row]);
+    Some(normal.cholesky()?.solve(&SVector::from(right)))
 }
 
 fn middle(values: &mut [f64]) -> f64 {
@@ -79,6 +92,15 @@ fn middle(values: &mut [f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn grey_values_are_kept_to_their_range_and_cut_as_the_library_does() {
+        let beside = |value: f32| [value.next_down(), value, value.next_up()];
+        let values = (-6..=1030).flat_map(|quarter: i16| beside(0.25 * f32::from(quarter)));
+        for value in values.chain([f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e20, -1e20]) {
+            assert_eq!(whole_grey_value(value), value as u8, "{value}");
+        }
+    }
 
     #[test]
     fn the_light_of_a_lamp_is_found_in_spite_of_an_object() {

@@ -113,6 +113,7 @@ mod trace;
 mod trace_settings;
 mod traced_pictures;
 mod trackmate;
+mod whole_pixels;
 mod write_error;
 mod y4m;
 

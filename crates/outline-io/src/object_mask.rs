@@ -35,8 +35,8 @@ pub(crate) struct Objects {
 }
 
 impl Objects {
-    /// Finds the objects of at least the smallest area among those that the pixels with `set(value)` form; the upper one
-    /// first where several have the same size. Keeps up to `limit` of them.
+    /// Finds the objects of at least the smallest area among those that the pixels with `set(value)` form, which are all from one grey value to
+    /// another; the upper one first where several have the same size. Keeps up to `limit` of them.
     pub(crate) fn of(
         picture: &GrayImage,
         set: impl Fn(u8) -> bool,
@@ -45,10 +45,10 @@ impl Objects {
     ) -> Result<Self, TraceError> {
         let (columns, rows) = (picture.width() as usize, picture.height() as usize);
         let pixels = picture.as_raw();
-        let mut is_set = [false; 256];
-        (0..=u8::MAX).for_each(|value| is_set[usize::from(value)] = set(value));
-        let components = Components::of(columns, rows, Connectivity::Eight, |column, row| {
-            is_set[usize::from(pixels[row * columns + column])]
+        let set = ValueRange::of(set);
+        let components = Components::of_rows(columns, rows, Connectivity::Eight, |row, is_set| {
+            let of_row = &pixels[row * columns..(row + 1) * columns];
+            is_set.iter_mut().zip(of_row).for_each(|(is_set, value)| *is_set = u8::from(set.has(*value)));
         });
         let (mut sizes, mut largest) = (Vec::new(), 0);
         for (root, count) in components.pixel_counts() {
@@ -96,6 +96,28 @@ impl Objects {
     }
 }
 
+/// Grey values from one to another, which are told without a table: many pixels side by side.
+#[derive(Debug, Clone, Copy)]
+struct ValueRange {
+    lowest: u8,
+    /// How many there are after the lowest; `None` where there is no value at all.
+    more: Option<u8>,
+}
+
+impl ValueRange {
+    /// From the lowest to the highest of the values that are set, as those beyond a threshold are.
+    fn of(set: impl Fn(u8) -> bool) -> Self {
+        let lowest = (0..=u8::MAX).find(|value| set(*value));
+        let highest = (0..=u8::MAX).rfind(|value| set(*value));
+        Self { lowest: lowest.unwrap_or(0), more: highest.zip(lowest).map(|(highest, lowest)| highest - lowest) }
+    }
+
+    #[inline(always)]
+    fn has(self, value: u8) -> bool {
+        self.more.is_some_and(|more| value.wrapping_sub(self.lowest) <= more)
+    }
+}
+
 /// Half-open bounds of the pixels of an object.
 struct Bounds {
     left: usize,
@@ -119,11 +141,13 @@ impl Bounds {
 /// Fills what is not connected, over edges, with the outside of the window.
 pub(crate) fn fill_holes(filled: &mut [bool], width: usize, height: usize) {
     // One more pixel of ground all round, so that the outside is one component and its first run the first of all.
-    let is_ground = |column: usize, row: usize| {
-        let within = (1..=width).contains(&column) && (1..=height).contains(&row);
-        !within || !filled[(row - 1) * width + column - 1]
-    };
-    let ground = Components::of(width + 2, height + 2, Connectivity::Four, is_ground);
+    let ground = Components::of_rows(width + 2, height + 2, Connectivity::Four, |row, is_ground| {
+        is_ground.fill(1);
+        if (1..=height).contains(&row) {
+            let of_row = &filled[(row - 1) * width..row * width];
+            is_ground[1..=width].iter_mut().zip(of_row).for_each(|(is_ground, filled)| *is_ground = u8::from(!filled));
+        }
+    });
     for run in ground.runs_but_first() {
         let (from, columns) = ((run.row() - 1) * width, run.columns());
         filled[from + columns.start - 1..from + columns.end - 1].fill(true);

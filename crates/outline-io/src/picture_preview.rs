@@ -16,13 +16,15 @@ use crate::{
     picture_outlines::{PictureOutlines, PictureSettings},
     picture_sequence::{PictureFrame, PictureSequence, SequenceSettings},
     trace::is_two_valued,
+    whole_pixels,
 };
 
 /// Fewest pictures that tell how objects are best found.
 const FEWEST_PICTURES: usize = 3;
 
-/// Pictures whose edges tell how well outlines are known.
+/// Pictures whose edges tell how well outlines are known, and pictures that tell whether they are drawn on whole pixels.
 const EDGES_LOOKED_AT: usize = 6;
+const STEPS_LOOKED_AT: usize = 12;
 
 /// Most pixels of these pictures, all together: those of one of the largest.
 const EDGE_PIXELS: usize = 1 << 26;
@@ -161,17 +163,28 @@ impl PicturePreview {
             pixels <= EDGE_PIXELS
         };
         let pictures: Vec<PictureFrame> =
-            self.pictures(channel)?.flatten().take(EDGES_LOOKED_AT).take_while(is_looked_at).collect();
+            self.pictures(channel)?.flatten().take(STEPS_LOOKED_AT).take_while(is_looked_at).collect();
         if !pictures.is_empty() && pictures.iter().all(|frame| is_two_valued(&frame.picture)) {
             return Some(OutlineUncertainty::MaskPixel(settings.trace.pixel()));
         }
         if matches!(settings.background, Some(Background::RunningMedian(_))) || settings.trace.ring.is_some() {
             return None;
         }
-        let settings = PictureSettings { selection: Selection::Largest, ..settings.clone() };
-        let traced = PictureOutlines::new(pictures.into_iter().map(Ok), settings).ok()?.flatten();
-        let edges = traced.flat_map(|traced| traced.objects.unwrap_or_default()).filter_map(|(_, traced)| traced.edges);
-        let mut lengths: Vec<f64> = edges.map(|edges| edges.systematic).collect();
+        let traced = |count: usize, selection: Selection| {
+            let pictures = pictures.iter().take(count).cloned().map(Ok);
+            Some(PictureOutlines::new(pictures, PictureSettings { selection, ..settings.clone() }).ok()?.flatten())
+        };
+        let selection = match settings.selection {
+            Selection::Largest | Selection::Nearest => Selection::Largest,
+            Selection::All | Selection::Moving => Selection::All,
+        };
+        // What is drawn on whole pixels is off as masks are.
+        if whole_pixels::are_drawn_on(traced(STEPS_LOOKED_AT, selection)?, &settings.trace) {
+            return Some(OutlineUncertainty::MaskPixel(settings.trace.pixel()));
+        }
+        let largest =
+            traced(EDGES_LOOKED_AT, Selection::Largest)?.flat_map(|traced| traced.objects.unwrap_or_default());
+        let mut lengths: Vec<f64> = largest.filter_map(|(_, traced)| Some(traced.edges?.systematic)).collect();
         lengths.sort_by(f64::total_cmp);
         lengths.get(lengths.len() / 2).copied().map(OutlineUncertainty::Edges)
     }

@@ -25,7 +25,10 @@ pub struct Crossing {
 /// inside and two are not, the inside corners are joined: the inside is connected over corners, as in 8-connected
 /// components. Values that are not numbers are below any level.
 pub fn of_samples(size: [usize; 2], value: impl Fn(usize, usize) -> f64, level: f64) -> Vec<Vec<Crossing>> {
-    let samples = Samples { size, value, level };
+    let of_row = |y: usize, inside: &mut [bool]| {
+        inside.iter_mut().enumerate().for_each(|(x, inside)| *inside = value(x, y) >= level);
+    };
+    let samples = Samples { size, value: &value, of_row, level };
     let lines = samples.grid().lines(samples.starts());
     lines.iter().map(|line| line.steps.iter().map(|step| samples.crossing(*step)).collect()).collect()
 }
@@ -56,19 +59,31 @@ pub struct WantedHoles {
     pub count: usize,
 }
 
-/// Of the lines of [`of_samples`] the largest, and those of the largest holes that do not run along the edge of the grid; `None` if there is no
-/// line. Nothing is kept of the others, of which there may be as many as samples.
+/// Of the lines of [`of_samples`], for samples row by row, the largest, and those of the largest holes that do not run along the edge of the
+/// grid; `None` if there is no line. Nothing is kept of the others, of which there may be as many as samples.
 ///
 /// # Errors
 /// A line, one of these or another, has more than `most` crossings, or those of the holes have together.
+///
+/// # Panics
+/// There are fewer samples than columns times rows.
 pub fn largest_of_samples(
     size: [usize; 2],
-    value: impl Fn(usize, usize) -> f64,
+    samples: &[f32],
     level: f64,
     wanted: WantedHoles,
     most: usize,
 ) -> Result<Option<LargestLines>, LineTooLong> {
-    let samples = Samples { size, value, level };
+    let [columns, rows] = size;
+    let samples = &samples[..columns * rows];
+    // As numbers of the samples' own size more of them are compared side by side.
+    let least = least_at(level);
+    let of_row = |y: usize, inside: &mut [bool]| {
+        let of_row = &samples[y * columns..(y + 1) * columns];
+        inside.iter_mut().zip(of_row).for_each(|(inside, sample)| *inside = *sample >= least);
+    };
+    let value = |x: usize, y: usize| f64::from(samples[y * columns + x]);
+    let samples = Samples { size, value, of_row, level };
     let mut outer: Option<Summary> = None;
     let mut holes: Vec<Summary> = Vec::new();
     for line in samples.summaries(most) {
@@ -101,14 +116,16 @@ struct Summary {
 }
 
 /// Samples of a grid and a level. A margin of one node stands for what surrounds the grid: no line leaves it.
-struct Samples<V> {
+struct Samples<V, R> {
     /// Columns and rows.
     size: [usize; 2],
     value: V,
+    /// Says of all samples of a row whether they are inside.
+    of_row: R,
     level: f64,
 }
 
-impl<V: Fn(usize, usize) -> f64> Samples<V> {
+impl<V: Fn(usize, usize) -> f64, R: Fn(usize, &mut [bool])> Samples<V, R> {
     fn sample(&self, [column, row]: Node) -> Option<f64> {
         let (x, y) = (usize::try_from(column - 1).ok()?, usize::try_from(row - 1).ok()?);
         (x < self.size[0] && y < self.size[1]).then(|| (self.value)(x, y))
@@ -151,12 +168,18 @@ impl<V: Fn(usize, usize) -> f64> Samples<V> {
     }
 
     /// Steps into the inside from the row before: every closed line has a first row, where it has one. Most samples have none, so that
-    /// they are looked at as they lie in memory.
+    /// those of a row are looked at side by side.
     fn starts(&self) -> impl Iterator<Item = Step> {
         let [columns, rows] = self.size;
-        let is_inside = |x, y| (self.value)(x, y) >= self.level;
-        let enters = move |x: usize, y: usize| is_inside(x, y) && (y == 0 || !is_inside(x, y - 1));
-        let entries = (0..rows).flat_map(move |y| (0..columns).filter(move |&x| enters(x, y)).map(move |x| [x, y]));
+        let (mut inside, mut enters) = (vec![false; columns], vec![false; columns]);
+        let entries = (0..rows).flat_map(move |y| {
+            enters.copy_from_slice(&inside);
+            (self.of_row)(y, &mut inside);
+            enters.iter_mut().zip(&inside).for_each(|(enters, inside)| *enters = *inside && !*enters);
+            let is_empty = !enters.contains(&true);
+            let of_row: Vec<usize> = if is_empty { Vec::new() } else { (0..columns).filter(|&x| enters[x]).collect() };
+            of_row.into_iter().map(move |x| [x, y])
+        });
         entries.map(|[x, y]| {
             let inside = [x as i64 + 1, y as i64 + 1];
             Step { left: [inside[0], inside[1] - 1], right: inside }
@@ -171,6 +194,12 @@ impl<V: Fn(usize, usize) -> f64> Samples<V> {
         let [x, y] = [0, 1].map(|k| (inside[k] - 1) as f64 + share * (outside[k] - inside[k]) as f64);
         Crossing { x, y, at_edge }
     }
+}
+
+/// The least number that is not below a level.
+fn least_at(level: f64) -> f32 {
+    let nearest = level as f32;
+    if f64::from(nearest) < level { nearest.next_up() } else { nearest }
 }
 
 /// Area within a closed line of [`of_samples`], in squares of the sample spacing: positive with the inside within, negative
@@ -201,6 +230,14 @@ mod tests {
     fn corners_that_touch_are_joined() {
         assert_eq!(lines_of(&[&[1.0, 0.0], &[0.0, 1.0]], 0.5).len(), 1);
         assert_eq!(lines_of(&[&[0.0, 1.0], &[1.0, 0.0]], 0.5).len(), 1);
+    }
+
+    #[test]
+    fn samples_are_at_a_level_or_beyond_it_as_numbers_of_either_size() {
+        for level in [0.5, 0.1, 1.0 / 3.0, 127.5, 100.1, 1e-3, -0.7] {
+            let least = least_at(level);
+            assert!(f64::from(least) >= level && f64::from(least.next_down()) < level, "{level}");
+        }
     }
 
     #[test]
@@ -242,7 +279,8 @@ mod tests {
             let lines = of_samples([values[0].len(), values.len()], |x, y| values[y][x], 2.0);
             let found = |count: usize, most: usize| {
                 let (size, wanted) = ([values[0].len(), values.len()], WantedHoles { smallest: 1.0, count });
-                largest_of_samples(size, |x, y| values[y][x], 2.0, wanted, most)
+                let samples: Vec<f32> = values.iter().flatten().map(|value| *value as f32).collect();
+                largest_of_samples(size, &samples, 2.0, wanted, most)
             };
             let largest = lines.iter().max_by(|a, b| signed_area(a).total_cmp(&signed_area(b)));
             let is_hole =

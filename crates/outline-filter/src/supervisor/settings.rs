@@ -25,7 +25,8 @@ pub struct FilterSettings {
     /// the first outline: where its points lie on the pixels of a lattice, or on its lines as interpolated ones do, they are off by what that
     /// leaves, by how ragged they are. What such an outline is off stays as it is while the object moves by less than a pixel, and points beside
     /// each other are off together: their noise is reckoned with as at least 0.15 of a pixel of a mask, and what is stated is widened, the less
-    /// the more pixels the object has moved on. Points that state deviations of their own are off by these.
+    /// the more pixels the object has moved on, as far as frames show it: where it moves by whole pixels from frame to frame they do not. Points
+    /// that state deviations of their own are off by these.
     pub mask_pixel: f64,
     /// Smallest agreement ([`FrameMeasurement::agreement`](crate::FrameMeasurement::agreement)) of a frame that is taken, in (0, 1); 0.7 by
     /// default.

@@ -60,10 +60,9 @@ impl MotionFilter {
         let edge_uncertainty = self.settings.edge_uncertainty;
         let [pixel, of_side] = track.rounding_of_side();
         if [displacement, edge_uncertainty, pixel].iter().any(|length| *length > 0.0) {
-            // Rounding to pixels is a saw tooth as the object moves, whose mean falls with the pixels that it moves on.
+            // Rounding to pixels is a saw tooth as the object moves, whose mean falls with the teeth that the frames show.
             let span = track.span_of_motion(self.history.is_constant());
-            let pixels = (track.travelled(span) / pixel).max(1.0);
-            let rounding = of_side / pixels;
+            let rounding = if pixel > 0.0 { of_side / track.pixels_passed(span, pixel).max(1.0) } else { 0.0 };
             let [pose, motion] = track.systematic(edge_uncertainty.hypot(rounding), span);
             // What the motion model does not have need not be constant.
             let [mut of_pose, mut of_motion] = track.systematic(displacement, track.span_of_motion(false));

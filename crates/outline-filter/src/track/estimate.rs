@@ -92,15 +92,18 @@ impl Track {
         shortest.max(memory.step.min(memory.span)).max(f64::MIN_POSITIVE)
     }
 
-    /// How far the points of the outline have moved in the image in the time `span` that the motion is known from, root mean square; image
-    /// lengths.
-    pub(crate) fn travelled(&self, span: f64) -> f64 {
-        let Belief { model, pose, motion, .. } = &self.belief;
+    /// How many saw teeth the rounding of the points to pixels of a size, image lengths, has gone through in the time `span` that the motion is
+    /// known from: the pixels that they have moved on, root mean square. Frames show less of them where points move by more than half a pixel from
+    /// one to the next, and none where they move by whole pixels, as they lie on these alike then.
+    pub(crate) fn pixels_passed(&self, span: f64, pixel: f64) -> f64 {
+        let Belief { model, pose, motion, memory, .. } = &self.belief;
         let motion = ProjectiveMotion::of_generator(&model.generator(&motion[..model.parameter_count()]));
+        let step = if memory.step > 0.0 { memory.step } else { span };
+        let pixels = step * self.reference.radius / pixel;
         let cells = self.map.cells();
-        let squares = cells.iter().map(|cell| motion.velocity(&map_point(pose, &cell.centre)).norm_squared());
-        let speed = (squares.sum::<f64>() / cells.len().max(1) as f64).sqrt();
-        speed * span * self.reference.radius
+        let seen = |velocity: Vector2<f64>| (velocity * pixels).map(|along| along - along.round());
+        let squares = cells.iter().map(|cell| seen(motion.velocity(&map_point(pose, &cell.centre))).norm_squared());
+        (squares.sum::<f64>() / cells.len().max(1) as f64).sqrt() * span / step
     }
 
     /// Whether the object moves beyond doubt: by the squared motion in its covariance.

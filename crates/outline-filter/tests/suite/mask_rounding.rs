@@ -42,11 +42,13 @@ proptest! {
             let [mask, both] = [of_masks, with_edges].map(|settings| stated(settings, &frames));
             prop_assert_eq!(&mask[0], &both[0]);
 
-            // The way of the points, root mean square: all of them move at a constant speed.
-            let (shape, velocity) = (Shape::from(BuiltInShape::Bird), ProjectiveMotion::of_generator(&motion.generator()));
-            let squares = (0..200).map(|i| velocity.velocity(&shape.point_at(f64::from(i) / 200.0)).norm_squared());
-            let seconds = frames[FRAMES - 1].time - frames[0].time;
-            let pixels = ((squares.sum::<f64>() / 200.0).sqrt() * seconds / pixel).max(1.0);
+            // The way of the points beyond whole pixels from frame to frame, root mean square: all of them move at a constant speed.
+            let (last, velocity) = (&frames[FRAMES - 1], ProjectiveMotion::of_generator(&motion.generator()));
+            let step = last.time - frames[FRAMES - 2].time;
+            let beyond_whole = |p: &Point2<f64>| (velocity.velocity(p) * step / pixel).map(|along| along - along.round());
+            let points: Vec<Point2<f64>> = last.outline.pieces().flat_map(|piece| piece.points.to_vec()).collect();
+            let mean = points.iter().map(|p| beyond_whole(p).norm_squared()).sum::<f64>() / points.len() as f64;
+            let pixels = (mean.sqrt() * (last.time - frames[0].time) / step).max(1.0);
             // An edge uncertainty of the same size does not fall.
             for (mask, both) in mask[2].iter().zip(&both[2]) {
                 let share = (both * both - mask * mask) / (mask * mask);

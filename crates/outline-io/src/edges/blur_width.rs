@@ -1,7 +1,8 @@
 use nalgebra::{Point2, Vector2};
 
+use super::sampler::Sampler;
 use super::step_fit::{StepFit, normal_distribution};
-use super::{Edge, EdgeSource, median};
+use super::{Edge, median};
 
 /// Points whose profiles tell the width.
 const PROFILES: usize = 96;
@@ -14,7 +15,7 @@ const WIDTHS: [f64; 3] = [0.5, 4.0, 0.1];
 
 /// Width of the edges of a contour: that of the step which fits the median of their profiles best. `None` where no profile rises.
 pub(super) fn of(
-    source: &EdgeSource,
+    source: &Sampler,
     points: &[Point2<f64>],
     normals: &[Option<Vector2<f64>>],
     edges: &[Edge],
@@ -27,7 +28,7 @@ pub(super) fn of(
     let (mut profiles, mut values) = (Vec::new(), Vec::new());
     for &i in rises.iter().step_by(step) {
         let normal = normals[i]?;
-        source.profile(points[i] + edges[i].place * normal, normal, &wide, &mut values);
+        source.profile(points[i] + edges[i].place * normal, normal, wide.offsets(), &mut values);
         // Levels by what lies beyond the edge, near enough to be of the same two sides.
         let middle = values.len() / 2;
         let level = |range: std::ops::Range<usize>| values[range.clone()].iter().sum::<f64>() / range.len() as f64;
@@ -42,14 +43,15 @@ pub(super) fn of(
     let [least, most, step] = WIDTHS;
     let misfit = |width: f64| {
         let near = |s: f64| s.abs() <= (2.0 * width + 1.0).min(REACH);
-        let samples: Vec<(f64, f64)> =
-            wide.offsets().zip(&profile).filter(|(s, _)| near(*s)).map(|(s, v)| (s, *v)).collect();
         let shape = |s: f64| 0.5 - normal_distribution(s / width);
+        // What the step is there, and what the profile shows.
+        let samples: Vec<(f64, f64)> =
+            wide.offsets().iter().zip(&profile).filter(|(s, _)| near(*s)).map(|(s, v)| (shape(s), *v)).collect();
         let n = samples.len() as f64;
         let mean = samples.iter().map(|(_, v)| v).sum::<f64>() / n;
-        let square: f64 = samples.iter().map(|(s, _)| shape(*s).powi(2)).sum();
-        let height = samples.iter().map(|(s, v)| shape(*s) * v).sum::<f64>() / square;
-        samples.iter().map(|(s, v)| (v - mean - height * shape(*s)).powi(2)).sum::<f64>()
+        let square: f64 = samples.iter().map(|(shape, _)| shape.powi(2)).sum();
+        let height = samples.iter().map(|(shape, v)| shape * v).sum::<f64>() / square;
+        samples.iter().map(|(shape, v)| (v - mean - height * shape).powi(2)).sum::<f64>()
             / (n - 2.5)
             / (height * height)
     };

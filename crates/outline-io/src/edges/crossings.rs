@@ -1,5 +1,3 @@
-use std::collections::HashMap;
-
 use nalgebra::Point2;
 
 /// Segments of a small loop, whose points are put in a row again; wider ones are two parts of the line that cross.
@@ -73,20 +71,23 @@ fn put_back(before: &[Point2<f64>], moved: &mut [Point2<f64>], segment: usize) {
 fn crossing_segments(points: &[Point2<f64>]) -> Vec<[usize; 2]> {
     let count = points.len();
     let ends = |i: usize| (points[i], points[(i + 1) % count]);
-    let mut cells: HashMap<(i32, i32), Vec<usize>> = HashMap::new();
-    let mut crossing = Vec::new();
+    // Segments that cross have a cell of the grid in common. Those of a cell are beside each other once all are sorted.
+    let mut cells: Vec<(i32, i32, usize)> = Vec::with_capacity(2 * count);
     for i in 0..count {
         let (a, b) = ends(i);
         let range = |p: f64, q: f64| (p.min(q).floor() as i32)..=(p.max(q).floor() as i32);
-        for cell in range(a.x, b.x).flat_map(|x| range(a.y, b.y).map(move |y| (x, y))) {
-            let others = cells.entry(cell).or_default();
-            for &j in others.iter() {
-                let is_next = j == i || (j + 1) % count == i || (i + 1) % count == j;
-                if !is_next && do_cross((a, b), ends(j)) {
+        cells.extend(range(a.x, b.x).flat_map(|x| range(a.y, b.y).map(move |y| (x, y, i))));
+    }
+    cells.sort_unstable();
+    let mut crossing = Vec::new();
+    for of_cell in cells.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+        for (k, &(_, _, i)) in of_cell.iter().enumerate() {
+            for &(_, _, j) in &of_cell[..k] {
+                let is_next = j == i || j + 1 == i || (j == 0 && i + 1 == count);
+                if !is_next && do_cross(ends(i), ends(j)) {
                     crossing.push([j, i]);
                 }
             }
-            others.push(i);
         }
     }
     crossing.sort_unstable();

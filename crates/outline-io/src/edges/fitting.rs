@@ -1,8 +1,9 @@
 //! The edges on the normals of points, each by the widest profile that shows it alone.
 use nalgebra::{Point2, Vector2};
 
+use super::sampler::Sampler;
 use super::step_fit::{SPACING, StepFit};
-use super::{Edge, EdgeSource, FIRST_WIDTH, blur_width, median};
+use super::{Edge, FIRST_WIDTH, blur_width, median};
 
 /// How far narrow profiles reach, in widths of the edge and pixels: near enough for thin parts.
 const NARROW: [f64; 2] = [2.2, 1.2];
@@ -32,7 +33,7 @@ fn reach([widths, pixels]: [f64; 2], width: f64) -> f64 {
     widths * width + pixels
 }
 
-impl EdgeSource<'_> {
+impl Sampler<'_> {
     /// The edges on the normals of points, and the widest fit. `None` where there are none.
     pub(super) fn fitted(
         &self,
@@ -99,12 +100,12 @@ impl EdgeSource<'_> {
         fit: &StepFit,
         (rounds, values): (usize, &mut Vec<f64>),
     ) {
+        let mut last = None;
         for _ in 0..rounds {
-            self.profile(point + edge.place * normal, normal, fit, values);
-            let found = fit.of(values);
+            self.profile(point + edge.place * normal, normal, fit.offsets(), values);
+            let found = last.insert(fit.of(values));
             // Outwards the signal falls.
             edge.step = -found.step;
-            edge.residual = found.residual;
             edge.one_sided = Some(found.one_sided);
             let moved = if edge.step > 0.0 { found.place.clamp(-1.0, 1.0) } else { 0.0 };
             edge.place = (edge.place + moved).clamp(-8.0, 8.0);
@@ -112,6 +113,7 @@ impl EdgeSource<'_> {
                 break;
             }
         }
+        edge.residual = last.map_or(edge.residual, |found| fit.residual(values, &found));
     }
 }
 
@@ -130,16 +132,16 @@ impl Shorter<'_> {
     /// An edge that the narrow profile has found, by one that reaches as far as it is alone; `None` where the widest shows it alone.
     fn refitted(
         &mut self,
-        source: &EdgeSource,
+        source: &Sampler,
         (point, normal): (Point2<f64>, Vector2<f64>),
         edge: &Edge,
     ) -> Option<Edge> {
         let width = self.fit.width();
-        source.profile(point + edge.place * normal, normal, self.fit, &mut self.values);
+        source.profile(point + edge.place * normal, normal, self.fit.offsets(), &mut self.values);
         let least = reach(SHORTEST, width);
         let alone = (self.alone(edge)? - BEFORE_ANOTHER * width).max(least);
         if self.fits.is_empty() {
-            let most = self.fit.offsets().last().unwrap_or(least);
+            let [_, most] = self.fit.offsets().ends();
             let reaches = (0..).map(|k| least + SPACING * f64::from(k)).take_while(|reach| *reach < most);
             self.fits.extend(reaches.map(|reach| StepFit::new(width, reach)));
         }

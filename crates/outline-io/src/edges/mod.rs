@@ -7,6 +7,8 @@ mod blur_width;
 mod crossings;
 mod edge_profile;
 mod fitting;
+mod on_pixels;
+mod sampler;
 mod step_fit;
 mod systematic;
 
@@ -14,11 +16,11 @@ use freeform_curve_fit::isoline::Crossing;
 use image::GrayImage;
 use nalgebra::{Point2, Vector2};
 
-use crate::contrast::{Contrast, signal};
+use crate::contrast::Contrast;
 pub use edge_profile::{EdgeProfile, SoughtEdges};
 
 use crossings::{Moved, undo_crossings};
-use step_fit::StepFit;
+use sampler::Sampler;
 
 /// Width of the edges before it is known, in pixels.
 const FIRST_WIDTH: f64 = 1.2;
@@ -54,6 +56,13 @@ pub(crate) const OF_POINT: f64 = 0.01;
 /// Standard deviation of the Gaussian that heights of steps are smoothed by along the contour, in points.
 const STEPS_TOGETHER: f64 = 4.0;
 
+/// Share of points between two pixels from which on edges are those of pixels: far beyond what random places have, and what is hidden by
+/// details that are as small as pixels is left to the object.
+const MOST_ON_PIXELS: f64 = 0.7;
+
+/// Deviation of a number that is rounded to a whole one.
+const ROUNDED_TO_PIXELS: f64 = 0.288_675;
+
 /// What the edges of an outline are like, and how well they tell its place.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EdgeFit {
@@ -61,7 +70,8 @@ pub struct EdgeFit {
     /// of a place told by one pixel of contour. Of a point without an edge of its own, which lies between its neighbours', larger.
     pub deviations: Vec<f64>,
     /// Systematic uncertainty of the outline, in its unit: how far edges may lie off together along a side of it, by the grid of pixels, the
-    /// rounding of grey values, and light that changes on one side of the edge.
+    /// rounding of grey values, and light that changes on one side of the edge; of edges that are [those of pixels](Self::is_on_pixels) their
+    /// rounding too.
     pub systematic: f64,
     /// Median height of the step, in grey values; positive.
     pub contrast: f64,
@@ -71,6 +81,24 @@ pub struct EdgeFit {
     pub noise: f64,
     /// Share of the points that have an edge of their own.
     pub clear_share: f64,
+    /// Share of the points whose edge lies between two pixels, neither of which shows a part of the step: nearly all where the object is drawn
+    /// without anti-aliasing, up to a third where it is drawn with it, hardly any in pictures of a camera.
+    pub on_pixels: f64,
+}
+
+impl EdgeFit {
+    /// Whether the edges are those of pixels: where they are rounded to, and not where the object has them.
+    #[must_use]
+    pub fn is_on_pixels(&self) -> bool {
+        self.on_pixels > MOST_ON_PIXELS
+    }
+
+    /// With what such edges are off by, if they are: a side may lie off by half a pixel either way.
+    fn with_rounding(self, on_pixels: f64) -> Self {
+        let fit = Self { on_pixels, ..self };
+        let rounding = if fit.is_on_pixels() { ROUNDED_TO_PIXELS } else { 0.0 };
+        Self { systematic: fit.systematic.hypot(rounding), ..fit }
+    }
 }
 
 /// What is looked at of a picture.
@@ -99,24 +127,14 @@ struct Edge {
 }
 
 impl EdgeSource<'_> {
-    /// Grey value between the pixels, on a scale where objects are lighter.
-    #[inline]
-    fn value(&self, place: Point2<f64>) -> f64 {
-        interpolated(self.picture, place, |pixel| f64::from(signal(pixel, self.contrast)))
-    }
-
-    fn profile(&self, place: Point2<f64>, normal: Vector2<f64>, fit: &StepFit, values: &mut Vec<f64>) {
-        values.clear();
-        values.extend(fit.offsets().map(|s| self.value(place + s * normal)));
-    }
-
     /// Moves a closed line of crossings, given from the left upper pixel of a window, onto the edges. `None`, and the line as it was, where
     /// it has no edges.
     pub(crate) fn refine(&self, line: &mut [Crossing], place: [usize; 2]) -> Option<EdgeFit> {
+        let on_pixels = on_pixels::share(self.picture, line, place);
         let (fit, moved) = self.move_onto_edges(line, place)?;
         // The normals of a ragged line that is far from the edges are not those of the edges.
         let again = if moved == Moved::NotEverywhere { self.move_onto_edges(line, place) } else { None };
-        Some(again.map_or(fit, |(fit, _)| fit))
+        Some(again.map_or(fit, |(fit, _)| fit).with_rounding(on_pixels))
     }
 
     /// As [`refine`](Self::refine), along the normals that the line has.
@@ -124,7 +142,7 @@ impl EdgeSource<'_> {
         let at = |c: &Crossing| Point2::new(left as f64 + c.x, top as f64 + c.y);
         let points: Vec<Point2<f64>> = line.iter().map(at).collect();
         let normals: Vec<Option<Vector2<f64>>> = (0..line.len()).map(|i| outward(line, i)).collect();
-        let (edges, fit) = self.fitted(&points, &normals)?;
+        let (edges, fit) = Sampler::new(self.picture, self.contrast).fitted(&points, &normals)?;
         let width = fit.width();
         let own = |i: &usize| normals[*i].is_some();
         let all: Vec<usize> = (0..line.len()).filter(own).collect();
@@ -172,7 +190,7 @@ impl EdgeSource<'_> {
             crossing.x = (crossing.x + (moved.x - before.x)).clamp(-0.5 - left as f64, right - left as f64);
             crossing.y = (crossing.y + (moved.y - before.y)).clamp(-0.5 - top as f64, lower - top as f64);
         }
-        Some((EdgeFit { deviations, systematic, contrast, blur: width, noise, clear_share }, result))
+        Some((EdgeFit { deviations, systematic, contrast, blur: width, noise, clear_share, on_pixels: 0.0 }, result))
     }
 }
 
@@ -214,9 +232,13 @@ fn leave_out_strays(edges: &[Edge], is_clear: &mut [bool], farthest: f64) {
     let strays: Vec<usize> = (0..count)
         .filter(|&i| is_clear[i])
         .filter(|&i| {
-            let around = (0..=2 * reach).map(|k| (i + count + k - reach) % count).filter(|&j| is_clear[j]);
-            let middle = median(around.map(|j| edges[j].place)).unwrap_or(0.0);
-            (edges[i].place - middle).abs() > farthest
+            let first = i + count - reach;
+            let around =
+                (first..=first + 2 * reach).map(|k| k % count).filter(|&j| is_clear[j]).map(|j| edges[j].place);
+            // Where they lie no farther apart than that, none does from the one in the middle.
+            let [low, high] =
+                around.clone().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)]);
+            high - low > farthest && (edges[i].place - median(around).unwrap_or(0.0)).abs() > farthest
         })
         .collect();
     strays.into_iter().for_each(|i| is_clear[i] = false);
@@ -263,9 +285,11 @@ fn smoothed(places: &[f64], sigma: f64) -> Vec<f64> {
     let weights: Vec<f64> =
         (0..=2 * reach).map(|k| (-0.5 * ((k as f64 - reach as f64) / sigma).powi(2)).exp()).collect();
     let total: f64 = weights.iter().sum();
-    let at =
-        |i: usize| weights.iter().enumerate().map(|(k, w)| w * places[(i + count + k - reach) % count]).sum::<f64>();
-    (0..count).map(|i| at(i) / total).collect()
+    // All the way round and on, as far as windows reach.
+    let (before, after) = (&places[count - reach..], &places[..reach]);
+    let around: Vec<f64> = before.iter().chain(places).chain(after).copied().collect();
+    let mean = |window: &[f64]| window.iter().zip(&weights).map(|(place, weight)| weight * place).sum::<f64>() / total;
+    around.windows(weights.len()).map(mean).collect()
 }
 
 /// How far the edges of a bent outline lie outside of where the middle grey value is: `w^2 / 2` times the curvature.

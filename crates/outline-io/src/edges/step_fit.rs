@@ -1,12 +1,15 @@
 /// Distance of the samples of a profile, in pixels.
 pub(super) const SPACING: f64 = 0.5;
 
+/// Samples of a profile that are worked out side by side: some registers full.
+pub(super) const SIDE_BY_SIDE: usize = 4;
+
 /// A least-squares fit of a step of known width to a profile about it. The even part of the profile tells the place, the odd part the
 /// height: on a window that is symmetric about the edge the two do not disturb each other, nor does an even slope the place.
 #[derive(Debug, Clone)]
 pub(super) struct StepFit {
     width: f64,
-    reach: usize,
+    offsets: Offsets,
     /// Of every sample.
     weights: Vec<Weights>,
     /// The step of height 1 about its middle.
@@ -15,15 +18,44 @@ pub(super) struct StepFit {
     place_of_bend: f64,
 }
 
-/// Weights of a sample in sums over a profile.
-#[derive(Debug, Clone, Copy)]
-struct Weights {
-    /// In that which gives the height.
-    step: f64,
-    /// In that which gives height times place.
-    place: f64,
-    /// In that which gives how much steeper the light rises on the far side than on the near one, half of it.
-    bend: f64,
+/// Weights of a sample in sums over a profile: in that which gives the height, in that which gives height times place, in that which gives how much
+/// steeper the light rises on the far side than on the near one, half of it, and in that of all.
+type Weights = [f64; 4];
+
+/// Where the samples of a profile are, in pixels from its middle.
+#[derive(Debug, Clone)]
+pub(super) struct Offsets {
+    /// In their order; the last of them fill it with what is at the far end.
+    side_by_side: Vec<[f64; SIDE_BY_SIDE]>,
+    count: usize,
+}
+
+impl Offsets {
+    /// Of so many samples to either side and that of the middle.
+    pub(super) fn within(reach: usize) -> Self {
+        let count = 2 * reach + 1;
+        let offset = |k: usize| SPACING * (k.min(2 * reach) as f64 - reach as f64);
+        let four = |block: usize| std::array::from_fn(|k| offset(SIDE_BY_SIDE * block + k));
+        Self { side_by_side: (0..count.div_ceil(SIDE_BY_SIDE)).map(four).collect(), count }
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.count
+    }
+
+    pub(super) fn iter(&self) -> impl Iterator<Item = f64> {
+        self.side_by_side.iter().flatten().copied().take(self.count)
+    }
+
+    pub(super) fn side_by_side(&self) -> &[[f64; SIDE_BY_SIDE]] {
+        &self.side_by_side
+    }
+
+    /// The first and the last.
+    pub(super) fn ends(&self) -> [f64; 2] {
+        let far = 0.5 * SPACING * (self.count - 1) as f64;
+        [-far, far]
+    }
 }
 
 /// What a profile shows.
@@ -33,7 +65,8 @@ pub(super) struct Step {
     pub(super) place: f64,
     /// Grey values that the profile rises by.
     pub(super) step: f64,
-    pub(super) residual: f64,
+    /// Mean of the grey values.
+    middle: f64,
     /// How much farther along the edge is seen to lie as the light changes on one side of it more than on the other.
     pub(super) one_sided: f64,
 }
@@ -41,10 +74,10 @@ pub(super) struct Step {
 impl StepFit {
     /// For steps of this width, from samples as far as `reach` from the middle, in pixels.
     pub(super) fn new(width: f64, reach: f64) -> Self {
-        let reach = ((reach / SPACING).round() as usize).max(3);
+        let offsets = Offsets::within(((reach / SPACING).round() as usize).max(3));
         let (shape, slope): (Vec<f64>, Vec<f64>) =
-            offsets(reach).map(|s| (normal_distribution(s / width) - 0.5, density(s / width) / width)).unzip();
-        let bend: Vec<f64> = offsets(reach).map(f64::abs).collect();
+            offsets.iter().map(|s| (normal_distribution(s / width) - 0.5, density(s / width) / width)).unzip();
+        let bend: Vec<f64> = offsets.iter().map(f64::abs).collect();
         let about_mean = |values: &[f64]| -> Vec<f64> {
             let mean = values.iter().sum::<f64>() / values.len() as f64;
             values.iter().map(|value| value - mean).collect()
@@ -55,8 +88,8 @@ impl StepFit {
         let place_of_bend = dot(&of_place, &bend);
         let of_bend = weights(&bend.iter().zip(&slope).map(|(b, s)| b - place_of_bend * s).collect::<Vec<f64>>());
         let together = of_step.into_iter().zip(of_place).zip(of_bend);
-        let weights = together.map(|((step, place), bend)| Weights { step, place, bend }).collect();
-        Self { width, reach, weights, shape, place_of_bend }
+        let weights = together.map(|((step, place), bend)| [step, place, bend, 1.0]).collect();
+        Self { width, offsets, weights, shape, place_of_bend }
     }
 
     /// Width of the steps, in pixels.
@@ -65,44 +98,41 @@ impl StepFit {
     }
 
     /// Places of the samples, in pixels from the middle.
-    pub(super) fn offsets(&self) -> impl Iterator<Item = f64> + use<> {
-        offsets(self.reach)
+    pub(super) fn offsets(&self) -> &Offsets {
+        &self.offsets
     }
 
     /// Standard deviation of a height, for samples with this residual.
     pub(super) fn deviation_of_step(&self, residual: f64) -> f64 {
         // Samples of neighbouring places share pixels: half of them are independent.
-        residual * (2.0 * self.weights.iter().map(|of| of.step * of.step).sum::<f64>()).sqrt()
+        residual * (2.0 * self.weights.iter().map(|[step, ..]| step * step).sum::<f64>()).sqrt()
     }
 
     /// Standard deviation of a place that a profile one pixel wide tells, in pixels, where noise is as large as the step: from the information
     /// of the step, less what goes into the grey values of the two sides.
     pub(super) fn deviation_of_place(&self) -> f64 {
-        let information = 1.0 / (2.0 * std::f64::consts::PI.sqrt() * self.width) - 0.5 / (self.reach as f64 * SPACING);
+        let information = 1.0 / (2.0 * std::f64::consts::PI.sqrt() * self.width) - 0.5 / self.offsets.ends()[1];
         information.max(1e-3).powf(-0.5)
     }
 
     pub(super) fn of(&self, values: &[f64]) -> Step {
         let place_of = |step: f64, shift: f64| if step == 0.0 { 0.0 } else { (-shift / step).clamp(-2.0, 2.0) };
         // All sums side by side: one alone waits for its own last addition.
-        let [mut step, mut shift, mut bend, mut sum] = [0.0; 4];
+        let mut sums = [0.0; 4];
         for (of, value) in self.weights.iter().zip(values) {
-            step += of.step * value;
-            shift += of.place * value;
-            bend += of.bend * value;
-            sum += value;
+            sums.iter_mut().zip(of).for_each(|(sum, of)| *sum += of * value);
         }
+        let [step, shift, bend, sum] = sums;
         let place = place_of(step, shift);
         let one_sided = place_of(step, bend * self.place_of_bend);
-        let middle = sum / values.len().max(1) as f64;
-        let squares = values.iter().zip(&self.shape).map(|(value, shape)| (value - middle - step * shape).powi(2));
-        let residual = (squares.sum::<f64>() / (values.len().max(4) - 3) as f64).sqrt();
-        Step { place, step, residual, one_sided }
+        Step { place, step, middle: sum / values.len().max(1) as f64, one_sided }
     }
-}
 
-fn offsets(reach: usize) -> impl Iterator<Item = f64> + use<> {
-    (0..=2 * reach).map(move |k| SPACING * (k as f64 - reach as f64))
+    /// Root mean square of what a step leaves of the profile that shows it.
+    pub(super) fn residual(&self, values: &[f64], Step { step, middle, .. }: &Step) -> f64 {
+        let squares = values.iter().zip(&self.shape).map(|(value, shape)| (value - middle - step * shape).powi(2));
+        (squares.sum::<f64>() / (values.len().max(4) - 3) as f64).sqrt()
+    }
 }
 
 /// Weights that give how much of a shape there is.
@@ -141,12 +171,16 @@ mod tests {
             let mut found = 0.0;
             for _ in 0..5 {
                 let value = |s: f64| ground + height * normal_distribution((s + found - place) / width);
-                let values: Vec<f64> = fit.offsets().map(value).collect();
+                let values: Vec<f64> = fit.offsets().iter().map(value).collect();
                 found += fit.of(&values).place;
             }
-            let values: Vec<f64> =
-                fit.offsets().map(|s| ground + height * normal_distribution((s + found - place) / width)).collect();
-            let Step { step, residual, .. } = fit.of(&values);
+            let values: Vec<f64> = fit
+                .offsets()
+                .iter()
+                .map(|s| ground + height * normal_distribution((s + found - place) / width))
+                .collect();
+            let found_again = fit.of(&values);
+            let (step, residual) = (found_again.step, fit.residual(&values, &found_again));
             assert!((found - place).abs() < 1e-4, "{found} {place}");
             assert!((step / height - 1.0).abs() < 1e-3 && residual < 1e-2 * height.abs(), "{step} {residual}");
         }
@@ -155,7 +189,7 @@ mod tests {
     #[test]
     fn a_slope_of_the_ground_does_not_move_the_step() {
         let fit = StepFit::new(1.5, 4.5);
-        let values: Vec<f64> = fit.offsets().map(|s| 100.0 * normal_distribution(s / 1.5) + 2.0 * s).collect();
+        let values: Vec<f64> = fit.offsets().iter().map(|s| 100.0 * normal_distribution(s / 1.5) + 2.0 * s).collect();
         assert!(fit.of(&values).place.abs() < 1e-6);
     }
 
@@ -164,10 +198,11 @@ mod tests {
         let fit = StepFit::new(1.5, 7.5);
         for slope in [-0.7, 0.3] {
             let light = |s: f64| slope * s.max(0.0) + 100.0 * normal_distribution(s / 1.5);
-            let Step { place, one_sided, .. } = fit.of(&fit.offsets().map(light).collect::<Vec<f64>>());
+            let Step { place, one_sided, .. } = fit.of(&fit.offsets().iter().map(light).collect::<Vec<f64>>());
             assert!(place.abs() > 0.01 && (one_sided / place - 1.0).abs() < 0.02, "{one_sided} {place}");
         }
-        let even: Vec<f64> = fit.offsets().map(|s| 100.0 * normal_distribution((s - 0.01) / 1.5) + 0.5 * s).collect();
+        let even: Vec<f64> =
+            fit.offsets().iter().map(|s| 100.0 * normal_distribution((s - 0.01) / 1.5) + 0.5 * s).collect();
         assert!(fit.of(&even).one_sided.abs() < 1e-4);
     }
 }

@@ -184,12 +184,14 @@ fn neither_threshold_nor_shading_moves_an_edge() {
 fn blur_contrast_and_noise_are_told_and_points_have_their_deviations() {
     let step = Step { angle: 1.1, place: -3.0, contrast: 90.0, blur: 1.8, shading: 0.0, noise: 4.0 };
     let traced = step.traced(5, &settings());
-    let EdgeFit { deviations, systematic, contrast, blur, noise, clear_share } = traced.edges.clone().expect("edges");
+    let EdgeFit { deviations, systematic, contrast, blur, noise, clear_share, on_pixels } =
+        traced.edges.clone().expect("edges");
     assert_eq!(deviations.len(), traced.outline.point_count());
     assert!(
         (contrast - 90.0).abs() < 4.0 && (blur - 1.85).abs() < 0.25 && (noise - 4.0).abs() < 1.2,
         "{contrast} {blur} {noise}"
     );
+    assert!(on_pixels < 0.1, "{on_pixels}");
     assert!(clear_share > 0.9 && systematic < 0.1, "{clear_share} {systematic}");
     let errors = step.errors(&traced);
     let (spread, typical) = (rms(&errors), median(deviations));
