@@ -49,7 +49,7 @@ fn prime_factors(number: usize) -> impl Iterator<Item = usize> {
         if rest < 2 {
             return None;
         }
-        while rest % factor != 0 {
+        while !rest.is_multiple_of(factor) {
             // What has no factor up to its root is a prime.
             factor = if factor * factor < rest { factor + 1 } else { rest };
         }
