@@ -117,7 +117,8 @@ impl Contour {
         let half_window = self.no_wider(half_window);
         let usual = self.half_window_for(sigma, tuning::NORMAL_NOISE).min(half_window);
         self.mark_outliers(usual, sigma);
-        let mut fits: Vec<LocalFit> = self.widest_fits(usual..=half_window, sigma).into_iter().flatten().collect();
+        let mut fits = Vec::with_capacity(self.points.len() + 1);
+        fits.extend(self.widest_fits(usual..=half_window, sigma).into_iter().flatten());
         if fits.len() < tuning::FEWEST_RESAMPLED {
             return None;
         }
@@ -230,27 +231,21 @@ impl Contour {
         Point2::new(median(&mut xs).unwrap_or(0.0), median(&mut ys).unwrap_or(0.0))
     }
 
-    /// Distance of a point from the line of its neighbours, in units that make its variance that of the noise.
-    fn residual(&self, i: usize, fit: &LocalFit) -> Option<f64> {
-        let tangent = fit.tangent.try_normalize(tuning::NO_DIRECTION)?;
-        let deviation = fit.residual_variance.max(tuning::LEAST_RESIDUAL_VARIANCE).sqrt();
-        Some(tangent.perp(&(self.points[i] - fit.position)).abs() / deviation)
-    }
-
     fn residual_scale(&mut self, half_window: usize) -> Option<f64> {
         self.prepare(half_window);
-        let residuals = (0..self.points.len()).filter(|i| !self.outlier[*i]).filter_map(|i| {
+        let mut residuals = Vec::with_capacity(self.points.len());
+        residuals.extend((0..self.points.len()).filter(|i| !self.outlier[*i]).filter_map(|i| {
             let fit = self.local_fit(i, half_window)?;
-            (fit.residual_variance > tuning::TELLING_RESIDUAL_VARIANCE).then(|| self.residual(i, &fit)).flatten()
-        });
-        median(&mut residuals.collect::<Vec<_>>()).map(|m| MEDIAN_TO_DEVIATION * m)
+            (fit.residual_variance > tuning::TELLING_RESIDUAL_VARIANCE).then(|| fit.residual()).flatten()
+        }));
+        median(&mut residuals).map(|m| MEDIAN_TO_DEVIATION * m)
     }
 
     fn mark_outliers(&mut self, half_window: usize, sigma: f64) {
         self.prepare(half_window);
         let marks: Vec<bool> = (0..self.points.len())
             .map(|i| {
-                let residual = self.local_fit(i, half_window).and_then(|fit| self.residual(i, &fit));
+                let residual = self.local_fit(i, half_window).and_then(|fit| fit.residual());
                 residual.is_none_or(|r| r > tuning::OUTLYING * sigma)
             })
             .collect();
@@ -291,7 +286,9 @@ impl Contour {
         let mut fits_over = |half_window| -> Vec<Option<LocalFit>> {
             self.prepare(half_window);
             let inliers = (0..self.points.len()).filter(|i| !self.outlier[*i]);
-            inliers.map(|i| self.local_fit(i, half_window)).collect()
+            let mut fits = Vec::with_capacity(self.points.len());
+            fits.extend(inliers.map(|i| self.local_fit(i, half_window)));
+            fits
         };
         // Outliers have just been marked by the narrower one.
         let narrow = fits_over(narrowest);

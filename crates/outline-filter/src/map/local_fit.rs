@@ -10,6 +10,32 @@ pub(super) struct LocalFit {
     pub(super) tangent: Vector2<f64>,
     /// Variance of the point's residual in units of the noise: below one if the point took part.
     pub(super) residual_variance: f64,
+    /// Distance of the point from the line, in units that make its variance that of the noise; negative where the line has no direction.
+    residual: f64,
+}
+
+impl LocalFit {
+    /// Of a place `off` from the point, and a tangent of any length.
+    #[inline(always)]
+    pub(super) fn at(point: Point2<f64>, off: Vector2<f64>, tangent: Vector2<f64>, residual_variance: f64) -> Self {
+        let (position, length) = (point + off, (tangent.x * tangent.x + tangent.y * tangent.y).sqrt());
+        let from = point - position;
+        let distance = (tangent.x / length * from.y - tangent.y / length * from.x).abs();
+        let residual = distance / residual_variance.max(tuning::LEAST_RESIDUAL_VARIANCE).sqrt();
+        Self {
+            position,
+            tangent,
+            residual_variance,
+            residual: if length <= tuning::NO_DIRECTION { -1.0 } else { residual },
+        }
+    }
+
+    /// Distance of the point from the line of its neighbours, in units that make its variance that of the noise; `None` where it has no direction.
+    #[inline(always)]
+    pub(super) fn residual(&self) -> Option<f64> {
+        // No number is no direction's.
+        (self.residual >= 0.0 || self.residual.is_nan()).then_some(self.residual)
+    }
 }
 
 /// The regression over the wider window if its place is that of the narrower one as far as noise goes.
@@ -55,12 +81,9 @@ impl Sums {
         }
         let inverse = self.gram().try_inverse()?;
         let (x, y) = (inverse * self.x, inverse * self.y);
-        Some(LocalFit {
-            position: origin + Vector2::new(x[0], y[0]),
-            tangent: Vector2::new(x[1], y[1]),
-            // An outlier stays one unless it lies within the noise of its neighbours' line as if that were exact.
-            residual_variance: if is_outlier { 1.0 } else { 1.0 - inverse[(0, 0)] },
-        })
+        // An outlier stays one unless it lies within the noise of its neighbours' line as if that were exact.
+        let residual_variance = if is_outlier { 1.0 } else { 1.0 - inverse[(0, 0)] };
+        Some(LocalFit::at(origin, Vector2::new(x[0], y[0]), Vector2::new(x[1], y[1]), residual_variance))
     }
 
     fn gram(&self) -> Matrix3<f64> {

@@ -44,7 +44,13 @@ impl NearestField {
         let in_pixels = |p: &Point2<f64>| (p - self.origin) * self.per_length - Vector2::repeat(0.5);
         let mut places: Vec<(Vector2<f64>, u32)> = places.iter().map(in_pixels).zip(0..).collect();
         places.sort_unstable_by(|(a, _), (b, _)| a.x.total_cmp(&b.x));
-        let mut rows = Rows { places: &places, width: self.width, nearest: &mut self.nearest, lowest: Vec::new() };
+        let count = places.len();
+        let mut rows = Rows {
+            places: &places,
+            width: self.width,
+            nearest: &mut self.nearest,
+            lowest: vec![Line::default(); count],
+        };
         let all: Vec<u32> = (0..places.len() as u32).collect();
         let (mut filled, last) = (0, self.height - 1);
         let mut above = rows.fill(0, &all);
@@ -109,19 +115,16 @@ impl Rows<'_> {
     /// Fills a row with the nearest of some places, given by where they are in order; those of them that are nearest somewhere.
     fn fill(&mut self, row: usize, candidates: &[u32]) -> Vec<u32> {
         let Self { places, width, nearest, lowest } = self;
-        lowest.clear();
-        for index in candidates {
-            let (p, _) = &places[*index as usize];
-            let across = p.y - row as f64;
-            let at_none = p.x * p.x + across * across;
-            push_line(lowest, Line { x: p.x, at_none, from: 0.0, index: *index });
-        }
-        // Lines from the last to the first, each over the columns that are left.
-        let mut pixels = &mut nearest[row * *width..][..*width];
-        for line in lowest.iter().rev() {
-            let from = (line.from.ceil() as usize).min(pixels.len());
-            pixels[from..].fill(places[line.index as usize].1);
-            pixels = &mut pixels[..from];
+        let lowest = lowest_lines(places, candidates, row as f64, lowest);
+        // Each line from the column that it is lowest from to that of the next.
+        let pixels = &mut nearest[row * *width..][..*width];
+        let mut column = 0;
+        for (number, line) in lowest.iter().enumerate() {
+            let end = lowest.get(number + 1).map_or(*width, |next| column_from(next.from, *width));
+            while column < end {
+                pixels[column] = line.number;
+                column += 1;
+            }
         }
         lowest.iter().map(|line| line.index).collect()
     }
@@ -137,7 +140,7 @@ impl Rows<'_> {
 }
 
 /// The square of the distance from a place along a row of pixels, less the square of the column.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Line {
     /// Column of the place; the line falls by twice as much from one column to the next.
     x: f64,
@@ -147,24 +150,47 @@ struct Line {
     from: f64,
     /// Where the place is in order.
     index: u32,
+    /// Of the place.
+    number: u32,
 }
 
-/// Adds a line that falls no slower than those before it, and drops those that are then lowest nowhere.
-fn push_line(lowest: &mut Vec<Line>, line: Line) {
-    while let Some(last) = lowest.last() {
-        let apart = line.x - last.x;
-        if apart > 0.0 {
-            let from = 0.5 * (line.at_none - last.at_none) / apart;
-            if from > last.from {
-                lowest.push(Line { from, ..line });
-                return;
+/// Those of the lines of some places, which fall faster from one to the next, that are lowest somewhere in a row; written over `lines`, which has room
+/// for all of them.
+fn lowest_lines<'a>(places: &[(Vector2<f64>, u32)], candidates: &[u32], row: f64, lines: &'a mut [Line]) -> &'a [Line] {
+    let mut count = 0;
+    'candidates: for index in candidates {
+        let (p, number) = &places[*index as usize];
+        let across = p.y - row;
+        let at_none = p.x * p.x + across * across;
+        let mut from = 0.0;
+        // What a line that is steeper undercuts before it is lowest itself is lowest nowhere.
+        while count > 0 {
+            let last = &lines[count - 1];
+            let apart = p.x - last.x;
+            if apart > 0.0 {
+                let begins = 0.5 * (at_none - last.at_none) / apart;
+                if begins > last.from {
+                    from = begins;
+                    break;
+                }
+            } else if at_none >= last.at_none {
+                continue 'candidates;
             }
-        } else if line.at_none >= last.at_none {
-            return;
+            count -= 1;
         }
-        lowest.pop();
+        lines[count] = Line { x: p.x, at_none, from, index: *index, number: *number };
+        count += 1;
     }
-    lowest.push(Line { from: 0.0, ..line });
+    &lines[..count]
+}
+
+/// The first column of so many that is not before a place in a row, which is not before the first; their number where none is.
+fn column_from(place: f64, columns: usize) -> usize {
+    let last = columns as f64;
+    let place = if place < last { place } else { last };
+    // Small whole numbers are turned to and fro by one instruction each.
+    let before = place as i32;
+    before as usize + usize::from(f64::from(before) < place)
 }
 
 #[cfg(test)]

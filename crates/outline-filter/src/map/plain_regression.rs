@@ -11,9 +11,9 @@ use crate::vectors::vectorised;
 #[derive(Debug, Clone, Default)]
 pub(super) struct PlainRegression {
     half_window: usize,
-    fits: Arc<[LocalFit]>,
+    fits: Arc<Vec<LocalFit>>,
     /// Those with every window that has been asked for: they do not depend on which points are outliers.
-    known: Vec<(usize, Arc<[LocalFit]>)>,
+    known: Vec<(usize, Arc<Vec<LocalFit>>)>,
     /// Outliers before each place of the window of the first point, and of those that follow.
     outliers: Vec<u32>,
 }
@@ -26,7 +26,7 @@ impl PlainRegression {
         }
         self.half_window = half_window;
         let known = self.known.iter().find(|(known, _)| *known == half_window);
-        self.fits = known.map_or_else(|| Self::fitted(points, closed, half_window).into(), |(_, fits)| fits.clone());
+        self.fits = known.map_or_else(|| Arc::new(Self::fitted(points, closed, half_window)), |(_, fits)| fits.clone());
         if known.is_none() {
             self.known.push((half_window, self.fits.clone()));
         }
@@ -44,8 +44,7 @@ impl PlainRegression {
             return Vec::new();
         }
         let moments = Moments::of(half_window);
-        let unknown = LocalFit { residual_variance: 1.0 - moments.by_own, ..LocalFit::default() };
-        let mut fits = vec![unknown; count];
+        let (mut fits, residual_variance) = (vec![LocalFit::default(); count], 1.0 - moments.by_own);
         // The points around the contour, or along it where every window ends within.
         let reach = if closed { half_window } else { 0 };
         let mut places = Vec::with_capacity(count + 2 * reach);
@@ -61,9 +60,8 @@ impl PlainRegression {
                     #[inline(always)]
                     |window, sums| {
                         let ([off, slope], own) = (moments.solve(sums), places[window + half_window]);
-                        let fit = &mut fits[first + window];
-                        fit.position = Point2::new(own[0] + off[0], own[1] + off[1]);
-                        fit.tangent = slope.into();
+                        let point = Point2::new(own[0], own[1]);
+                        fits[first + window] = LocalFit::at(point, off.into(), slope.into(), residual_variance);
                     },
                 );
             },

@@ -140,7 +140,7 @@ impl View<'_> {
     pub(crate) fn look_at_first(&self, frame: &mut Frame, pose: &Matrix3<f64>) -> FirstPose {
         let look = FirstLook::at(frame);
         let mut numbers = vec![0; look.points.len()];
-        let mean_square = self.rough_mean_square(&look, pose, &mut numbers);
+        let mean_square = self.rough_mean_square(&look, pose, f64::INFINITY, &mut numbers);
         FirstPose { look, mean_square, innovations: self.innovations_in(frame, pose) }
     }
 
@@ -156,7 +156,8 @@ impl View<'_> {
     ) -> Vec<NegativeLogLikelihood> {
         let mut numbers = vec![0; first.look.points.len()];
         let limit = far_worse * first.mean_square.max(1.0);
-        let rough: Vec<_> = others.iter().map(|pose| self.rough_mean_square(&first.look, pose, &mut numbers)).collect();
+        let rough_in = |pose| self.rough_mean_square(&first.look, pose, limit, &mut numbers);
+        let rough: Vec<_> = others.iter().map(rough_in).collect();
         let near = others.iter().zip(&rough).filter(|(_, square)| **square <= limit);
         let near: Vec<_> = near.map(|(pose, _)| self.innovations_in(frame, pose)).collect();
         let all: Vec<_> = std::iter::once(&first.innovations).chain(&near).collect();
@@ -169,9 +170,9 @@ impl View<'_> {
         std::iter::once(of_first).chain(others).collect()
     }
 
-    /// Mean square of the distances of points from the cells nearest to them in a pose, in units of the noise; `numbers` has room for one of
-    /// each.
-    fn rough_mean_square(&self, look: &FirstLook, pose: &Matrix3<f64>, numbers: &mut [u32]) -> f64 {
+    /// Mean square of the distances of points from the cells nearest to them in a pose, in units of the noise: all of it up to a
+    /// limit, and what is beyond that where some of the points say so. `numbers` has room for one of each.
+    fn rough_mean_square(&self, look: &FirstLook, pose: &Matrix3<f64>, limit: f64, numbers: &mut [u32]) -> f64 {
         let inverse = pose.try_inverse().unwrap_or_else(Matrix3::identity);
         let length = pose.fixed_view::<2, 2>(0, 0).determinant().abs().sqrt();
         let scale = length / self.comparable_noise();
@@ -179,9 +180,9 @@ impl View<'_> {
             #[inline(always)]
             || {
                 if is_affine(&inverse) {
-                    self.rough_mean_square_by::<true>(look, &inverse, scale, numbers)
+                    self.rough_mean_square_by::<true>(look, &inverse, (scale, limit), numbers)
                 } else {
-                    self.rough_mean_square_by::<false>(look, &inverse, scale, numbers)
+                    self.rough_mean_square_by::<false>(look, &inverse, (scale, limit), numbers)
                 }
             },
         )
@@ -192,34 +193,40 @@ impl View<'_> {
         &self,
         look: &FirstLook,
         inverse: &Matrix3<f64>,
-        scale: f64,
+        (scale, limit): (f64, f64),
         numbers: &mut [u32],
     ) -> f64 {
         let (map, offsets) = (self.map, self.belief.offsets.as_slice());
-        let FirstLook { points, ratios } = look;
-        map.associate(
-            points.iter().map(
-                #[inline(always)]
-                |p| map_point_by::<AFFINE>(inverse, p),
-            ),
-            numbers,
-        );
+        let count = look.points.len() as f64;
         let (cells, spacing) = (map.cells(), map.spacing());
         let (mut sum, mut unknown) = (0.0, 0.0);
-        for ((p, ratio), number) in points.iter().zip(ratios).zip(numbers) {
-            let Some(cell) = cells.get(*number as usize) else {
-                unknown += 1.0;
-                continue;
-            };
-            let q = map_point_by::<AFFINE>(inverse, p);
-            let from = q - cell.centre;
-            // The nearest cell is one that lies beside the point, or the point is far from all of them.
-            let is_beside = cell.normal.perp(&from).abs() < spacing;
-            let distance = if is_beside { cell.normal.dot(&from) - offsets[*number as usize] } else { from.norm() };
-            let size = scale * distance / ratio;
-            sum += (size * size).min(tuning::LARGEST * tuning::LARGEST);
+        let at_once = tuning::LOOKED_AT_ONCE;
+        let parts = look.points.chunks(at_once).zip(look.ratios.chunks(at_once)).zip(numbers.chunks_mut(at_once));
+        for ((points, ratios), numbers) in parts {
+            map.associate(
+                points.iter().map(
+                    #[inline(always)]
+                    |p| map_point_by::<AFFINE>(inverse, p),
+                ),
+                numbers,
+            );
+            for ((p, ratio), number) in points.iter().zip(ratios).zip(numbers) {
+                let Some(cell) = cells.get(*number as usize) else {
+                    unknown += 1.0;
+                    continue;
+                };
+                let q = map_point_by::<AFFINE>(inverse, p);
+                let from = q - cell.centre;
+                // The nearest cell is one that lies beside the point, or the point is far from all of them.
+                let is_beside = cell.normal.perp(&from).abs() < spacing;
+                let distance = if is_beside { cell.normal.dot(&from) - offsets[*number as usize] } else { from.norm() };
+                let size = scale * distance / ratio;
+                sum += (size * size).min(tuning::LARGEST * tuning::LARGEST);
+            }
+            if sum > limit * count {
+                break;
+            }
         }
-        let count = points.len() as f64;
         (sum + of_unknown(unknown, count * self.noise.correlation())) / count
     }
 

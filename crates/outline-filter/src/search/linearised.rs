@@ -222,7 +222,8 @@ impl SideBySide {
     }
 }
 
-/// Points linearised in a pose, given by its inverse, on the lines of their cells.
+/// Points linearised in a pose, given by its inverse, on the lines of their cells. Step by step for all lanes, and written in the end: the compiler
+/// does not turn into vectors what might overwrite what is still to be read.
 #[inline(always)]
 fn linearise_lanes(
     points: &[Point2<f64>; LANES],
@@ -230,18 +231,27 @@ fn linearise_lanes(
     inverse: &Matrix3<f64>,
     [residual, turn, u, v]: [&mut Lanes; 4],
 ) {
+    let (a, b, c) =
+        ([inverse[(0, 0)], inverse[(1, 0)]], [inverse[(0, 1)], inverse[(1, 1)]], [inverse[(0, 2)], inverse[(1, 2)]]);
+    let [mut px, mut py, mut x, mut y, mut at] = [[0.0; LANES]; 5];
     for lane in 0..LANES {
-        let (p, [x, y, at, _]) = (&points[lane], lines[lane]);
-        let pulled_x = x * inverse[(0, 0)] + y * inverse[(1, 0)];
-        let pulled_y = x * inverse[(0, 1)] + y * inverse[(1, 1)];
-        let from = x * inverse[(0, 2)] + y * inverse[(1, 2)] - at;
-        let distance = pulled_x * p.x + pulled_y * p.y + from;
-        let slope = 1.0 / (pulled_x * pulled_x + pulled_y * pulled_y).sqrt();
-        residual[lane] = distance * slope;
-        (u[lane], v[lane]) = (pulled_x * slope, pulled_y * slope);
-        // Of the foot of the point, which lies along the normal.
-        turn[lane] = u[lane] * p.y - v[lane] * p.x;
+        (px[lane], py[lane]) = (points[lane].x, points[lane].y);
+        [x[lane], y[lane], at[lane], _] = lines[lane];
     }
+    let [mut pulled_x, mut pulled_y, mut distance, mut slope, mut turned] = [[0.0; LANES]; 5];
+    for lane in 0..LANES {
+        pulled_x[lane] = x[lane] * a[0] + y[lane] * a[1];
+        pulled_y[lane] = x[lane] * b[0] + y[lane] * b[1];
+        let from = x[lane] * c[0] + y[lane] * c[1] - at[lane];
+        distance[lane] = pulled_x[lane] * px[lane] + pulled_y[lane] * py[lane] + from;
+        slope[lane] = 1.0 / (pulled_x[lane] * pulled_x[lane] + pulled_y[lane] * pulled_y[lane]).sqrt();
+    }
+    let (along_x, along_y) = (product(&pulled_x, &slope), product(&pulled_y, &slope));
+    for lane in 0..LANES {
+        // Of the foot of the point, which lies along the normal.
+        turned[lane] = along_x[lane] * py[lane] - along_y[lane] * px[lane];
+    }
+    (*residual, *turn, *u, *v) = (product(&distance, &slope), turned, along_x, along_y);
 }
 
 #[inline(always)]

@@ -192,8 +192,9 @@ impl MotionFilter {
         };
         let pose = *best.track.body_pose();
         let Some(track) = self.track.as_mut().filter(|track| !track.turn_is_unseen()) else { return candidates };
-        if track.shows_turn(outline, &pose, &mut self.frame) {
-            let symmetry = symmetry_order(track, outline, &pose, &mut self.frame);
+        let first = track.first_of_compared(outline, &pose, &mut self.frame);
+        if track.shows_turn_beside(&first, outline, &pose, &mut self.frame) {
+            let symmetry = symmetry_order(track, &first, &pose, &mut self.frame);
             if symmetry == self.search_memory.symmetry {
                 return candidates;
             }

@@ -40,7 +40,9 @@ impl MotionFilter {
         let Some(track) = self.track.as_ref().filter(|_| turn.abs() >= PI / LARGEST_NEAR_SYMMETRY as f64) else {
             return;
         };
-        let symmetry = symmetry_order(track, outline, track.body_pose(), &mut self.frame);
+        let pose = track.body_pose();
+        let first = track.first_of_compared(outline, pose, &mut self.frame);
+        let symmetry = symmetry_order(track, &first, pose, &mut self.frame);
         if symmetry > 1 {
             self.search_memory.symmetry = symmetry;
             self.turn_hypotheses.name_symmetry(symmetry, turn, shortest);

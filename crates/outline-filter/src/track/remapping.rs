@@ -144,7 +144,8 @@ impl Track {
 
     /// The points of every frame out of `stride` in the body frame, with the cells that they were seen of.
     fn points_in_body(&self, frames: &[PlacedFrame<'_>], stride: usize, buffers: &mut Frame) -> Option<Vec<CellPoint>> {
-        let mut list = Vec::new();
+        let count = frames.iter().step_by(stride).map(|frame| frame.outline.point_count()).sum();
+        let mut list = Vec::with_capacity(count);
         for PlacedFrame { outline, pose, .. } in frames.iter().step_by(stride) {
             buffers.load(outline, self.reference);
             let inverse = pose.try_inverse()?;

@@ -140,6 +140,8 @@ pub(crate) mod likelihood {
     pub(crate) const FAR_WORSE: f64 = 6.0;
     /// Points that a first look is at: the mean of their squares is known to a fifth.
     pub(crate) const ROUGHLY: usize = 100;
+    /// Of these so many at once, before the sum of their squares is looked at: a fifth of them, all far off, are beyond most limits.
+    pub(crate) const LOOKED_AT_ONCE: usize = 20;
     /// Points that turns are compared by; more of them would not decide more.
     pub(crate) const ENOUGH_POINTS: usize = 2000;
 }
