@@ -47,7 +47,7 @@ pub struct TrajectoryRow {
     pub time: Option<f64>,
     /// Whether the frame was used.
     pub accepted: bool,
-    /// Why it was not.
+    /// Why the frame was not used, where it was not.
     pub rejection: Option<FrameRejection>,
     /// Counted up from 0 where the object was given up and begun anew, and where a frame has shown its turn for the first time: nobody knows how far
     /// the object had turned between poses of different segments.
@@ -68,7 +68,7 @@ pub struct PoseAndMotion {
     pub pose: Vec<PoseParameter>,
     /// The motion.
     pub motion: MotionEstimate,
-    /// Velocity of the middle of the object; `None` where it is not stated.
+    /// Velocity of the middle of the object, in lengths of the image per second, or of space with a camera scale; `None` where it is not stated.
     pub velocity: Option<PointVelocity>,
 }
 
@@ -222,15 +222,17 @@ fn smooth_object(rows: &mut [&mut TrajectoryRow], noise: &ProcessNoise) -> Resul
     }
     for (start, count, states) in smoothed {
         let (before, from) = rows.split_at_mut(start);
+        // What the last frame does not tell of a constant motion, for an ambiguous turn say, none does; what it tells, all do.
+        let velocity_not_stated = from[count - 1].velocity_not_stated;
         let before = before.last_mut().filter(|row| row.accepted);
         if let (Some(before), Some(first)) = (before, states.first()) {
             before.state = before.time.map(|time| first.predicted(time, noise));
-            before.velocity_not_stated = None;
+            before.velocity_not_stated = velocity_not_stated;
         }
         let known = from[..count].iter_mut().filter(|row| row.state().is_some());
         known.zip(states).for_each(|(row, state)| {
             row.state = Some(state);
-            row.velocity_not_stated = None;
+            row.velocity_not_stated = velocity_not_stated;
         });
     }
     Ok(())

@@ -41,7 +41,7 @@ impl PointVelocity {
 }
 
 impl MotionState {
-    /// Velocity of the middle of the object, the centroid of its outline.
+    /// Velocity of the middle of the object, the centroid of its outline, in image lengths per second: [`velocity_of`](Self::velocity_of) it.
     #[must_use]
     pub fn velocity_of_middle(&self) -> PointVelocity {
         self.velocity_of(&(self.origin + self.radius * self.centroid.coords))

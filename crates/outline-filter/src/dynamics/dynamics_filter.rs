@@ -92,8 +92,8 @@ impl DynamicsFilter {
         of_any_size!(self, hypotheses => hypotheses.of_outline_now(pose))
     }
 
-    /// Ends a step whose frame tells nothing of the pose.
-    pub(crate) fn pass_over(&mut self) {
+    /// Ends a step, also one whose frame has told nothing of the pose.
+    pub(crate) fn end_step(&mut self) {
         of_any_size!(self, hypotheses => hypotheses.blend_arrivals());
     }
 

@@ -40,7 +40,7 @@ pub(crate) struct InteractingHypotheses<const N: usize> {
     pub(super) model: MotionModel,
     setting: Dynamics,
     pub(super) hypotheses: Vec<Hypothesis<N>>,
-    /// None but from a step in time until a frame has been compared with it.
+    /// None but from a prediction to the end of its step.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) arrivals: Vec<Arrival<N>>,
     /// None while the motion is seen to change, and where a setting says how it goes on.

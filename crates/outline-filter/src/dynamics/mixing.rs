@@ -52,7 +52,7 @@ pub(super) fn mix<const N: usize>(
         let share = taken / *weight;
         match &mut arrivals {
             Some(arrivals) if widens(hypothesis, of_all, share, units) => {
-                arrivals.push(Arrival { number, share, state: of_all.as_course(hypothesis.course, model, units) });
+                arrivals.push(Arrival { number, share, state: of_all.as_state_of(hypothesis, model, units) });
             }
             _ => {
                 let n = hypothesis.size();
@@ -126,11 +126,17 @@ fn counting<'a, const N: usize>(
 }
 
 impl<const N: usize> Pooled<N> {
-    /// As the state of a course.
-    fn as_course(&self, course: Course, model: MotionModel, units: (&CentredVector, f64)) -> Hypothesis<N> {
+    /// As the state of what has changed to a hypothesis. What its course has alone is as it was, but nothing is known of it.
+    fn as_state_of(
+        &self,
+        hypothesis: &Hypothesis<N>,
+        model: MotionModel,
+        units: (&CentredVector, f64),
+    ) -> Hypothesis<N> {
+        let course = hypothesis.course;
         let (n, k) = (if course.has_more_than_motion() { N } else { 2 * N / 3 }, N / 3);
         let shared = if course == Course::ConstantVelocity { 2 * k } else { n };
-        let mean = SVector::from_fn(|i, _| if i < shared { self.mean[i] } else { 0.0 });
+        let mean = SVector::from_fn(|i, _| if i < shared { self.mean[i] } else { hypothesis.mean[i] });
         let covariance = SMatrix::from_fn(|i, j| if i < shared && j < shared { self.covariance[(i, j)] } else { 0.0 });
         let mut hypothesis = Hypothesis { course, mean, covariance };
         if n > 2 * k {
@@ -257,6 +263,7 @@ impl Accelerations {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dynamics::Dynamics;
 
     #[test]
     fn constant_motions_are_left_more_rarely_than_changing_ones() {
@@ -289,6 +296,41 @@ mod tests {
         let [generator, velocity, shaken, middle, high] = left;
         assert!(generator == velocity && middle == high, "{left:?}");
         assert!(generator > 0.0 && 50.0 * generator < middle.min(shaken), "{left:?}");
+    }
+
+    #[test]
+    fn what_is_kept_apart_and_blended_at_once_is_what_is_mixed() {
+        let (units, model) = (CentredVector::repeat(1e-4), MotionModel::Rigid);
+        let before: Vec<Hypothesis<9>> = Course::all_of(Dynamics::Auto)
+            .into_iter()
+            .zip(1..)
+            .map(|(course, number)| {
+                let number = f64::from(number);
+                let n = if course.has_more_than_motion() { 9 } else { 6 };
+                let mean = SVector::from_fn(|i, _| if i < n { (number + i as f64).sin() } else { 0.0 });
+                let variance = 1e-4 * number.powi(3);
+                let covariance = SMatrix::from_fn(|i, j| if i == j && i < n { variance } else { 0.0 });
+                Hypothesis { course, mean, covariance }
+            })
+            .collect();
+        let begun: Vec<f64> = before.iter().map(|_| 1.0 / before.len() as f64).collect();
+        let (mut mixed, mut weights) = (before.clone(), begun.clone());
+        mix(&mut mixed, &mut weights, model, (&units, 0.1), None);
+        let (mut apart, mut weights_apart, mut arrivals) = (before.clone(), begun, Vec::new());
+        mix(&mut apart, &mut weights_apart, model, (&units, 0.1), Some(&mut arrivals));
+        assert!(arrivals.len() > before.len() / 2, "{}", arrivals.len());
+        assert_eq!(weights, weights_apart);
+        for Arrival { number, .. } in &arrivals {
+            assert_eq!(apart[*number].mean, before[*number].mean);
+        }
+        arrivals.iter().for_each(|arrival| arrival.blend_into(&mut apart[arrival.number]));
+        for (apart, mixed) in apart.iter().zip(&mixed) {
+            assert!((apart.mean - mixed.mean).amax() < 1e-12, "{:?}", apart.course);
+            // How far off the centroid the point of a constant velocity is follows from the rates, which differ.
+            let known = if apart.course == Course::ConstantVelocity { 6 } else { 9 };
+            let off = (apart.covariance - mixed.covariance).view((0, 0), (known, known)).amax();
+            assert!(off < 1e-12 * mixed.covariance.amax(), "{:?}: {off}", apart.course);
+        }
     }
 
     #[test]

@@ -67,11 +67,6 @@ impl MotionHistory {
     /// Records what became of a frame some time after the one before.
     pub(super) fn record(&mut self, outcome: &Outcome, seconds: f64) {
         self.since_taken += seconds;
-        if !outcome.is_accepted()
-            && let Some(dynamics) = self.dynamics.as_mut()
-        {
-            dynamics.pass_over();
-        }
         if outcome.is_accepted() {
             (self.contradiction, self.since_taken) = (None, 0.0);
             if let Some((dynamics, measured)) = self.dynamics.as_mut().zip(outcome.pose.as_ref()) {
@@ -84,6 +79,12 @@ impl MotionHistory {
         } else if let Some(apart) = outcome.pose.and_then(|measured| measured.error()) {
             self.record_apart(&apart);
         }
+        self.end_step();
+    }
+
+    /// Ends a step, whether a frame has told something or not.
+    pub(super) fn end_step(&mut self) {
+        self.dynamics.as_mut().into_iter().for_each(DynamicsFilter::end_step);
     }
 
     /// Records how far from where it was expected a frame shows the object that was not taken, and has been recorded.

@@ -16,6 +16,7 @@ impl MotionFilter {
         }
         if predict(&self.settings, track, &mut self.history, time - self.clock.of_track) {
             self.clock.of_track = time;
+            self.history.end_step();
         } else {
             self.phase = Phase::Lost;
         }

@@ -98,7 +98,7 @@ impl MotionFilter {
         let Statement { random, all, .. } = self.statement()?;
         let estimate = track.estimate_of(all, self.turn_told())?.with_random_part(&track.deviations_of(random)?);
         let doubts = self.turn_hypotheses.doubts(&estimate).into_iter().enumerate();
-        let is_stated = self.unstated().is_none() && !self.may_still_change();
+        let is_stated = self.unstated().is_none() && !self.may_still_change() && !self.contradicts_path();
         let unknown =
             doubts.take(self.settings.model.parameter_count()).filter(|(_, doubtful)| *doubtful || !is_stated);
         Some(unknown.fold(estimate, |e, (j, _)| e.with_unobservable(j)))
@@ -109,6 +109,13 @@ impl MotionFilter {
     fn may_still_change(&self) -> bool {
         let is_contradicted = self.motion_changed || self.counts.rejected_in_recording > 0;
         is_contradicted && self.track.as_ref().is_some_and(Track::is_found_one_step_ago)
+    }
+
+    /// Whether a turn is told by the path of the object, and more frames were rejected than that of a constant generator has.
+    fn contradicts_path(&self) -> bool {
+        let Counts { accepted_by_track: accepted, rejected_by_track: rejected, .. } = self.counts;
+        self.turn_told() == TurnTold::ByPath
+            && rejected as f64 > tuning::MOST_REJECTED_OF_PATH * (accepted + rejected) as f64
     }
 
     /// Whether the turn that is stated is told by the path of the object alone: the outline does not show it, and
@@ -188,7 +195,8 @@ impl MotionFilter {
     /// [ambiguous](Self::ambiguity), or if [`estimate`](Self::estimate) is `None`.
     #[must_use]
     pub fn velocity(&self) -> Option<PointVelocity> {
-        if self.turn_hypotheses.are_doubtful() || self.unstated().is_some() || self.may_still_change() {
+        let is_doubtful = self.turn_hypotheses.are_doubtful() || self.contradicts_path();
+        if is_doubtful || self.unstated().is_some() || self.may_still_change() {
             return None;
         }
         self.track.as_ref()?.velocity_of_centroid(&self.state()?)

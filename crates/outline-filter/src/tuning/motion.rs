@@ -94,7 +94,8 @@ pub(crate) mod dynamics {
     pub(crate) const OUTSIDE_THREE_DEVIATIONS: f64 = 0.0027;
     /// Deviations of a pose that an acceleration which begins moves the object by over the steps that its level remembers.
     pub(crate) const FIRST_ACCELERATION: f64 = 3.0;
-    /// Factor of the variance of an expected pose beyond which what has changed to a hypothesis is kept apart from it until a frame has been seen.
+    /// Share of the variance of an expected pose that what has changed to a hypothesis may add to it: more is kept apart until a frame has been seen. A
+    /// deviation that is wider by an eighth makes what lies five deviations off a few times as probable, one that is twice as wide ten thousand times.
     pub(crate) const WIDENS: f64 = 0.25;
     /// Share of a hypothesis below which it counts for nothing.
     pub(crate) const LEAST_SHARE: f64 = 1e-6;
@@ -230,6 +231,9 @@ pub(crate) mod statement {
     pub(crate) const ALONG_PIXELS: f64 = 0.1;
     /// Share of the frames rejected beyond which what the others say is no motion of the object.
     pub(crate) const MOST_REJECTED: f64 = 0.4;
+    /// As that, where the path of a constant generator tells the turn, and the outline does not: that of a disc that turned by more than half a radian from
+    /// frame to frame was thousands of deviations off, with three frames in ten rejected.
+    pub(crate) const MOST_REJECTED_OF_PATH: f64 = 0.1;
     /// Fewest frames rejected that say so.
     pub(crate) const FEWEST_REJECTED: usize = 5;
     /// Fewest frames rejected, no fewer than taken, that say so: one by itself may be wrong, and where frames are wrong by chance two of the

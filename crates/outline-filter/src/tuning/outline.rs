@@ -247,7 +247,8 @@ pub(crate) mod redrawing {
 
 /// Symmetry of outlines.
 pub(crate) mod symmetry {
-    /// Frames after which the outline is asked again whether it is symmetric: soon after its map has been cut anew, in a frame without that to do.
+    /// Frames after which the outline is asked again whether it is symmetric: soon after its map has been cut anew, in a frame without that to do, and
+    /// later on, when frames in wrong poses have made all teeth alike.
     pub(crate) const ASKED_AGAIN: [usize; 4] = [20, 40, 70, 200];
     /// Largest order that is looked for.
     pub(crate) const LARGEST_ORDER: usize = 72;

@@ -3,13 +3,15 @@ use crate::filter_support::{filter, frames_of, settings};
 use freeform_riccati::{AffineMotion, MotionModel, RigidMotion};
 use freeform_sim_camera::{BuiltInShape, Motion, Settings};
 
-/// What becomes of the angular velocity about the origin of the image, from the tenth frame on.
+/// What becomes of the angular velocity about the origin of the image, from the seventh frame on.
 #[derive(Debug, Default)]
 struct Told {
     frames: u32,
     rejected: u32,
     stated: u32,
-    /// By more than five deviations, from the sixth frame on.
+    /// Within two deviations.
+    within: u32,
+    /// By more than five.
     off: u32,
 }
 
@@ -32,7 +34,9 @@ fn told(spin: impl Fn(f64) -> f64 + Copy + Send + Sync + 'static) -> Told {
                     continue;
                 };
                 told.stated += 1;
-                told.off += u32::from((value - spin(frame.time)).abs() > 5.0 * std);
+                let off = (value - spin(frame.time)).abs() / std;
+                told.within += u32::from(off < 2.0);
+                told.off += u32::from(off > 5.0);
             }
         }
     }
@@ -44,6 +48,7 @@ fn the_spin_of_a_body_that_swings_is_within_its_deviations_at_its_turning_points
     // For three frames at its turning points it hardly changes, and then by thirty deviations from frame to frame.
     let told = told(|time| 4.5 * (6.0 * time + 0.5).sin());
     assert!(told.off == 0 && told.stated * 10 > told.frames * 9, "{told:?}");
+    assert!(told.within * 100 > told.stated * 85, "{told:?}");
 }
 
 #[test]
@@ -51,5 +56,5 @@ fn a_body_that_speeds_up_about_a_point_aside_is_followed_at_large_turns_from_fra
     // By 0.3 to 0.8 rad a frame. No acceleration of its centroid is nearly constant.
     let told = told(|time| 9.0 + 7.5 * time);
     assert!(told.rejected * 50 < told.frames && told.stated * 10 > told.frames * 9, "{told:?}");
-    assert!(told.off * 100 <= told.stated, "{told:?}");
+    assert!(told.off * 100 <= told.stated && told.within * 100 > told.stated * 85, "{told:?}");
 }
