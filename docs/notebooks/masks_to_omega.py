@@ -39,9 +39,8 @@ print("warnings:", [warning.code for warning in result.warnings])
 
 # %% [markdown]
 # `track` gives pose and motion after each frame: what was known at that time. The band is two standard deviations wide to either
-# side; it narrows with the number of frames. In some frames it is wide for a moment: there a motion that is no constant one could not be
-# ruled out. What is known after one frame and after the next is nearly the same, so that one recording is within two deviations for
-# long, or outside for long.
+# side; it narrows with the number of frames. What is known after one frame and after the next is nearly the same, so that one recording
+# is within two deviations for long, or outside for long.
 
 # %%
 motion = ff.track(masks, fps=FPS)

@@ -29,7 +29,7 @@ import record
 # ## One object
 #
 # The state of an object is a motion filter, and what Spark keeps of it are the bytes of `to_bytes`. They hold all that the filter knows:
-# one that is restored goes on to the last bit, on whichever worker. They are about 60 kB, and no more after a day.
+# one that is restored goes on to the last bit, on whichever worker. They are about 80 kB, and no more after a day.
 #
 # Spark calls `handleInputRows` for each object with the rows that came since the last call, in any order. An outline that cannot be used,
 # such as one that comes too late, is a row with the reason: nothing that a camera sends ends the stream.

@@ -25,6 +25,21 @@ impl NotStated {
         }
     }
 
+    /// Names and words of the values of a row that are not stated, as tables have them in one cell: `omega ambiguous; b1 ambiguous`.
+    ///
+    /// ```
+    /// use freeform_motion::tracker::NotStated;
+    ///
+    /// assert_eq!(NotStated::cell([("omega", NotStated::Ambiguous), ("v1", NotStated::Unknown)]), "omega ambiguous; v1 unknown");
+    /// assert_eq!(NotStated::cell([]), "");
+    /// ```
+    #[must_use]
+    pub fn cell<'a>(unstated: impl IntoIterator<Item = (&'a str, Self)>) -> String {
+        let each: Vec<String> =
+            unstated.into_iter().map(|(name, reason)| format!("{name} {}", reason.name())).collect();
+        each.join("; ")
+    }
+
     const fn of(is_ambiguous: bool, is_hidden: bool) -> Self {
         match (is_ambiguous, is_hidden) {
             (true, _) => Self::Ambiguous,
@@ -99,10 +114,4 @@ impl Observation {
     pub(super) fn turn_not_stated(&self) -> NotStated {
         NotStated::of(self.ambiguity.is_some(), !self.hidden.is_empty())
     }
-}
-
-/// What is empty in a row of a table, as a cell: `omega ambiguous; b1 ambiguous`, names and words in the order of the columns.
-pub(super) fn cell_of(unstated: impl Iterator<Item = (&'static str, NotStated)>) -> String {
-    let each: Vec<String> = unstated.map(|(name, reason)| format!("{name} {}", reason.name())).collect();
-    each.join("; ")
 }

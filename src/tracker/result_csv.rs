@@ -5,7 +5,7 @@ use freeform_identify::AdaptiveDiagnostics;
 
 use super::{
     family::MotionFamily,
-    not_stated::{NotStated, cell_of},
+    not_stated::NotStated,
     observation::{ObjectPhase, Observation},
     result::{ObjectResult, VELOCITY_NAMES},
 };
@@ -112,7 +112,7 @@ impl<W: Write> TraceWriter<W> {
         row.push(observation.rejection.as_ref().map_or_else(String::new, ToString::to_string));
         let names = self.family.parameter_names().iter();
         let parameters = names.filter_map(|name| Some((*name, observation.not_stated(name)?)));
-        row.push(cell_of(parameters.chain(of_velocity(velocity_unstated))));
+        row.push(NotStated::cell(parameters.chain(of_velocity(velocity_unstated))));
         self.writer.write_record(&row).map_err(io::Error::from)
     }
 

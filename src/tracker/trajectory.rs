@@ -6,7 +6,7 @@ use freeform_estimate::{
 };
 use freeform_riccati::{CameraScale, MotionModel};
 
-use super::{MethodSettings, Tracker, not_stated::NotStated, observation::Observation};
+use super::{MethodSettings, Tracker, not_stated::NotStated, observation::Observation, result::VELOCITY_NAMES};
 use crate::rejection::FrameRejection;
 
 /// The pose of every object in every frame: one row per observation, in their order. It needs the motion filter: the adaptive method gives no poses.
@@ -116,6 +116,22 @@ impl TrajectoryRow {
                 of_motion.map_or(self.turn_not_stated, |(_, reason)| *reason)
             }
         }
+    }
+
+    /// The values of the row that are not stated, each with why: of pose and motion by the names of their parameters, then `v1` and `v2`. `known` is
+    /// what [`Trajectory::poses`] has for the row.
+    #[must_use]
+    pub fn unstated(&self, known: Option<&PoseAndMotion>, model: MotionModel) -> Vec<(&'static str, NotStated)> {
+        let pose = |index: usize| known.and_then(|known| known.pose.get(index)).map(|parameter| parameter.value);
+        let motion = |index| known.and_then(|known| known.motion.parameters().nth(index)?.value);
+        let velocity = known.and_then(|known| known.velocity.filter(PointVelocity::is_finite));
+        let poses = Trajectory::pose_names(model).iter().enumerate().map(|(index, name)| (*name, pose(index)));
+        let motions = model.parameter_names().iter().enumerate().map(|(index, name)| (*name, motion(index)));
+        let velocities = VELOCITY_NAMES.into_iter().enumerate();
+        let velocities = velocities.map(|(index, name)| (name, velocity.map(|velocity| velocity.velocity[index])));
+        let values = poses.chain(motions).chain(velocities);
+        let unstated = values.filter(|(_, value)| !value.is_some_and(f64::is_finite));
+        unstated.map(|(name, _)| (name, self.why_unstated(name))).collect()
     }
 }
 

@@ -3,8 +3,7 @@ use std::io::{self, Write};
 use freeform_riccati::{CameraScale, MotionModel};
 
 use super::{
-    not_stated::cell_of,
-    result::VELOCITY_NAMES,
+    not_stated::NotStated,
     result_csv::{text_cell, velocity_cells, velocity_columns},
     trajectory::{PoseAndMotion, Trajectory},
 };
@@ -38,7 +37,7 @@ pub fn write_trajectory(
             row.time.map_or_else(String::new, |time| time.to_string()),
             row.accepted.to_string(),
         ];
-        let values_from = fields.len();
+        let unstated = NotStated::cell(row.unstated(known.as_ref(), model));
         let velocity = velocity_cells(known.as_ref().and_then(|known| known.velocity.as_ref()));
         match known {
             Some(PoseAndMotion { pose, motion, .. }) => {
@@ -48,10 +47,6 @@ pub fn write_trajectory(
             }
             None => fields.extend(std::iter::repeat_n(String::new(), 2 * names().count())),
         }
-        let values = fields[values_from..].iter().step_by(2).zip(names().copied());
-        let with_velocity = values.chain(velocity.iter().step_by(2).zip(VELOCITY_NAMES));
-        let empty = with_velocity.filter(|(cell, _)| cell.is_empty());
-        let unstated = cell_of(empty.map(|(_, name)| (name, row.why_unstated(name))));
         fields.push(row.segment.to_string());
         fields.extend(velocity);
         fields.push(row.rejection.as_ref().map_or_else(String::new, ToString::to_string));

@@ -3,14 +3,16 @@ use std::collections::HashMap;
 use std::ffi::CString;
 use std::sync::{Mutex, PoisonError};
 
-use freeform_motion::estimate::MotionEstimate;
+use freeform_motion::estimate::{MotionEstimate, PointVelocity};
 use freeform_motion::outline_io::{OutlineFrame, ReadError, ReadErrorKind, Span};
 use freeform_motion::riccati::MotionModel;
-use freeform_motion::tracker::{Followed, Method, Observation, ReadAhead, Recorded, Trajectory};
+use freeform_motion::tracker::{
+    Followed, Method, NotStated, Observation, ReadAhead, Recorded, Trajectory, VELOCITY_NAMES,
+};
 use numpy::{IntoPyArray as _, PyArray1};
 use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyString};
 
 use crate::estimate::or_nan;
 use crate::observation::PyObservation;
@@ -163,6 +165,8 @@ pub(crate) struct Recording {
     trajectory: Trajectory,
     phases: Vec<&'static str>,
     estimates: Vec<Option<MotionEstimate>>,
+    /// Why parameters of the estimates are not stated, of those that are not.
+    not_stated: Vec<Vec<(&'static str, NotStated)>>,
 }
 
 impl Recording {
@@ -170,6 +174,8 @@ impl Recording {
         self.trajectory.take(observation);
         self.phases.push(observation.phase.map_or("", |phase| phase.name()));
         self.estimates.push(observation.estimate);
+        let parameters = observation.estimate.iter().flat_map(MotionEstimate::parameters);
+        self.not_stated.push(parameters.filter_map(|p| Some((p.name, observation.not_stated(p.name)?))).collect());
     }
 
     /// One row per observation, in their order.
@@ -207,6 +213,7 @@ impl Recording {
         table.set_item("accepted", PyArray1::from_iter(py, rows.iter().map(|row| row.accepted)))?;
         let segments: Vec<i64> = rows.iter().map(|row| row.segment as i64).collect();
         let mut motions = self.estimates;
+        let (velocities, unstated): (Option<Vec<_>>, Vec<String>);
         if tracker.settings().method() == Method::Filter {
             let poses = self.trajectory.poses(scale);
             for (index, name) in Trajectory::pose_names(model).iter().enumerate() {
@@ -216,12 +223,66 @@ impl Recording {
                 table.set_item(*name, of(|parameter| parameter.value).into_pyarray(py))?;
                 table.set_item(format!("{name}_std"), of(|parameter| parameter.standard_deviation).into_pyarray(py))?;
             }
+            let of_rows = rows.iter().zip(&poses);
+            unstated = of_rows.map(|(row, known)| NotStated::cell(row.unstated(known.as_ref(), model))).collect();
+            velocities = Some(poses.iter().map(|known| known.as_ref()?.velocity).collect());
             motions = poses.into_iter().map(|known| known.map(|known| known.motion)).collect();
+        } else {
+            let of_rows = motions.iter().zip(&self.not_stated);
+            unstated = of_rows.map(|(motion, why)| unstated_parameters(model, motion.as_ref(), why)).collect();
+            velocities = None;
         }
         set_motions(&table, model, &motions)?;
+        // The columns that came later are behind all others, as in the tables of the program.
         table.set_item("segment", PyArray1::from_iter(py, segments))?;
+        if let Some(velocities) = velocities {
+            set_velocities(&table, &velocities)?;
+        }
+        let reasons = rows.iter().map(|row| row.rejection.as_ref().map_or_else(String::new, ToString::to_string));
+        table.set_item("reason", texts(py, reasons))?;
+        table.set_item("unstated", texts(py, unstated))?;
         Ok(table)
     }
+}
+
+/// The parameters that have no value, each with why: unknown where there is no motion at all.
+fn unstated_parameters(
+    model: MotionModel,
+    motion: Option<&MotionEstimate>,
+    why: &[(&'static str, NotStated)],
+) -> String {
+    let is_stated =
+        |name| motion.is_some_and(|motion| motion.parameters().any(|p| p.name == name && p.value.is_some()));
+    let reason =
+        |name| why.iter().find(|(parameter, _)| *parameter == name).map_or(NotStated::Unknown, |(_, reason)| *reason);
+    let names = model.parameter_names().iter().copied().filter(|name| !is_stated(*name));
+    NotStated::cell(names.map(|name| (name, reason(name))))
+}
+
+/// Texts of which many are the same: each is one object.
+fn texts<'py>(py: Python<'py>, texts: impl IntoIterator<Item = String>) -> Vec<Bound<'py, PyString>> {
+    let mut known: HashMap<String, Bound<'py, PyString>> = HashMap::new();
+    let mut shared = |text: String| match known.get(&text) {
+        Some(same) => same.clone(),
+        None => {
+            let made = PyString::new(py, &text);
+            known.insert(text, made.clone());
+            made
+        }
+    };
+    texts.into_iter().map(&mut shared).collect()
+}
+
+/// Columns for the velocity of the middle and for its standard deviations, NaN where it is not stated.
+fn set_velocities(table: &Bound<'_, PyDict>, velocities: &[Option<PointVelocity>]) -> PyResult<()> {
+    let stated = || velocities.iter().map(|velocity| velocity.filter(PointVelocity::is_finite));
+    for (index, name) in VELOCITY_NAMES.into_iter().enumerate() {
+        let values = stated().map(|velocity| Some(velocity?.velocity[index]));
+        let deviations = stated().map(|velocity| Some(velocity?.standard_deviations()[index]));
+        table.set_item(name, or_nan(values).into_pyarray(table.py()))?;
+        table.set_item(format!("{name}_std"), or_nan(deviations).into_pyarray(table.py()))?;
+    }
+    Ok(())
 }
 
 /// A column for every parameter and one for its standard deviation, NaN where there is none.

@@ -185,7 +185,8 @@ impl PyTracker {
         self.lock().settings().scale.map(CameraScale::value)
     }
 
-    /// Everything that the tracker knows, as bytes: 30 to 70 kB for each object. Pickling uses them too.
+    /// Everything that the tracker knows, as bytes: 45 to 90 kB for each object, and more for some frames while its motion is being found.
+    /// Pickling uses them too.
     ///
     /// Returns
     /// -------

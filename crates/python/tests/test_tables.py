@@ -7,7 +7,7 @@ import pyarrow
 import pytest
 
 import freeform_motion as ff
-from freeform_motion._tables import factorise
+from freeform_motion._tables import column_names, factorise
 
 
 def pushed(table):
@@ -113,6 +113,92 @@ def test_the_adaptive_method_has_a_motion_and_no_pose(table):
     assert "angle" not in tracked and np.isfinite(tracked["omega"][-1]) and np.isnan(tracked["omega_std"]).all()
 
 
+LATER_COLUMNS = ["v1", "v1_std", "v2", "v2_std", "reason", "unstated"]
+
+
+def empty_values(tracked, row):
+    """Names of the columns of values, those with a standard deviation, that are NaN in a row."""
+    return [name for name in tracked if f"{name}_std" in tracked and np.isnan(tracked[name][row])]
+
+
+def told(tracked, row):
+    """Names of what is not stated in a row, each with its reason."""
+    return dict(value.split(" ") for value in tracked["unstated"][row].split("; ") if value)
+
+
+def test_the_velocity_of_the_middle_and_the_reasons_come_behind_all_other_columns(table, as_table):
+    tracked = ff.track(as_table(table))
+    assert column_names(tracked) == [
+        *["object", "frame", "time", "phase", "accepted", "angle", "angle_std", "x", "x_std", "y", "y_std"],
+        *["omega", "omega_std", "b1", "b1_std", "b2", "b2_std", "segment", *LATER_COLUMNS],
+    ]
+    expected = ff.identify(table)["right"].velocity
+    found = [np.asarray(tracked[name])[-1] for name in LATER_COLUMNS[:4]]
+    assert found == [expected.velocity[0], expected.std[0], expected.velocity[1], expected.std[1]]
+    texts = {name: np.asarray(tracked[name]).tolist() for name in ("reason", "unstated")}
+    assert texts["reason"] == [""] * 30 and texts["unstated"][-1] == ""
+    assert texts["unstated"][0] == "; ".join(f"{name} unknown" for name in ("angle", "x", "y", "omega", "b1", "b2", "v1", "v2"))
+
+
+@pytest.mark.parametrize("motion", ["rigid", "similarity", "affine", "projective"])
+@pytest.mark.parametrize("smooth", [False, True])
+@pytest.mark.parametrize("shape", ["bird", "circle", "square"])
+def test_every_value_that_is_nan_has_a_reason_in_its_row(shape, motion, smooth):
+    tracked = ff.track(
+        ff.outline_table(ff.simulate(shape, b=(0.2, -0.1), omega=1.0, seconds=0.5)), motion=motion, smooth=smooth, adaptive=False
+    )
+    for row in range(len(tracked["frame"])):
+        assert list(told(tracked, row)) == empty_values(tracked, row)
+    reasons = {reason for row in range(len(tracked["frame"])) for reason in told(tracked, row).values()}
+    assert reasons <= {"unknown", "unobservable", "ambiguous"}
+    assert ("unobservable" in reasons) == (shape == "circle"), reasons
+
+
+def test_the_reasons_of_the_table_are_those_of_the_observations():
+    simulation = ff.simulate("circle", omega=1.0, b=(0.2, -0.1), seconds=0.5)
+    tracker = ff.Tracker()
+    observations = [tracker.push("0", frame.index, frame.time, frame.outline) for frame in simulation]
+    tracked = ff.track(ff.outline_table(simulation))
+    known = [row for row, observation in enumerate(observations) if observation.velocity is not None]
+    assert known and len(known) < len(observations)
+    for row, observation in enumerate(observations):
+        reasons = told(tracked, row)
+        for name in ("omega", "b1", "b2"):
+            assert reasons.get(name) == observation.not_stated(name)
+        assert reasons.get("v1") == reasons.get("v2") == observation.velocity_not_stated
+    found = [[tracked[name][row] for name in ("v1", "v2")] for row in known]
+    assert found == [observations[row].velocity.velocity.tolist() for row in known]
+
+
+def test_turns_between_which_the_outlines_do_not_decide_are_ambiguous_in_the_table():
+    # 43 degrees from frame to frame, which may as well be 47 the other way round.
+    tracked = ff.track(ff.outline_table(ff.simulate("square", omega=1.5, seconds=1.0, fps=2.0)))
+    reasons = told(tracked, -1)
+    assert reasons == dict.fromkeys(["angle", "omega", "b1", "b2", "v1", "v2"], "ambiguous")
+    assert list(reasons) == empty_values(tracked, -1)
+
+
+def test_masks_have_the_same_columns_as_tables(masks, table):
+    of_masks = ff.track(masks, fps=30)
+    assert list(of_masks) == list(ff.track(table))
+    assert np.isfinite(of_masks["v1"][-1]) and of_masks["unstated"][-1] == ""
+
+
+def test_the_adaptive_method_has_reasons_and_no_velocity_of_the_middle(table):
+    tracked = ff.track(table, method="adaptive")
+    assert list(tracked)[-3:] == ["segment", "reason", "unstated"] and "v1" not in tracked
+    for row in range(len(tracked["frame"])):
+        assert list(told(tracked, row)) == empty_values(tracked, row)
+    assert set(told(tracked, 0).values()) == {"unknown"} and tracked["unstated"][-1] == ""
+
+
+def test_the_camera_scale_divides_the_velocity_of_the_middle_in_the_table(table):
+    plain, scaled = ff.track(table), ff.track(table, scale=0.5)
+    for name in LATER_COLUMNS[:4]:
+        np.testing.assert_allclose(scaled[name], 2 * plain[name])
+    assert scaled["unstated"].tolist() == plain["unstated"].tolist()
+
+
 def test_the_camera_scale_divides_velocities(table):
     plain, scaled = ff.identify(table)["left"], ff.identify(table, scale=0.5)["left"]
     np.testing.assert_allclose(scaled.estimate.values, plain.estimate.values * [1, 2, 2])
@@ -205,11 +291,26 @@ def test_points_that_are_no_outline_are_a_rejected_frame(bird):
     assert "lie on one line" in result.first_rejection and "rows 4000 to 4399" in result.first_rejection
     tracked = ff.track(flat)
     assert not tracked["accepted"][10] and np.isnan(tracked["time"][10])
+    # Every frame has a reason of its own or none.
+    assert tracked["reason"][10] == result.first_rejection
+    assert [row for row, reason in enumerate(tracked["reason"]) if reason] == [10]
+    assert list(told(tracked, 10)) == empty_values(tracked, 10) and set(told(tracked, 10).values()) == {"unknown"}
 
 
 def test_an_empty_table_has_no_results():
     empty = {name: np.empty(0) for name in ("frame", "time", "x", "y")}
     assert len(ff.identify(empty)) == 0 and len(ff.track(empty)["time"]) == 0
+    for of in pandas.DataFrame, polars.DataFrame, pyarrow.table:
+        tracked = ff.track(of(empty))
+        assert all(len(tracked[name]) == 0 for name in LATER_COLUMNS)
+
+
+@pytest.mark.parametrize("of", [polars.DataFrame, pyarrow.table])
+def test_columns_of_texts_are_texts_in_every_library(table, of):
+    for rows in (table, {name: np.empty(0, column.dtype) for name, column in table.items()}):
+        tracked = ff.track(of(rows))
+        of_texts = [tracked[name].dtype if of is polars.DataFrame else tracked[name].type for name in ("reason", "unstated", "phase")]
+        assert of_texts == [polars.String if of is polars.DataFrame else pyarrow.string()] * 3
 
 
 def test_options_of_masks_and_unknown_columns_are_refused_for_tables(table):

@@ -309,9 +309,11 @@ def table_like(kind: str, columns: dict[str, Any]) -> Any:
 
 
 def with_names(columns: dict[str, Any], names: list[str]) -> dict[str, Any]:
-    """Columns with the names of the objects in place of their numbers."""
+    """Columns with the names of the objects in place of their numbers, and texts as arrays."""
     named = np.array(names, dtype=np.str_) if names else np.empty(0, dtype="U1")
-    return {**columns, "object": named[columns["object"]], "phase": np.array(columns["phase"], dtype="U9")}
+    # Arrays of fixed width would have the longest reason's room in every row. Libraries take no empty array of objects for texts.
+    texts = {name: np.array(columns[name], dtype=object if columns[name] else "U1") for name in ("reason", "unstated")}
+    return {**columns, "object": named[columns["object"]], "phase": np.array(columns["phase"], dtype="U9"), **texts}
 
 
 def outline_table(outlines: Simulation | Iterable[tuple[object, int, float, Outline]]) -> dict[str, Any]:
