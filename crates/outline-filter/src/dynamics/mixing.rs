@@ -308,7 +308,7 @@ mod tests {
                 let number = f64::from(number);
                 let n = if course.has_more_than_motion() { 9 } else { 6 };
                 let mean = SVector::from_fn(|i, _| if i < n { (number + i as f64).sin() } else { 0.0 });
-                let variance = 1e-4 * number.powi(3);
+                let variance = 1e-6 * number;
                 let covariance = SMatrix::from_fn(|i, j| if i == j && i < n { variance } else { 0.0 });
                 Hypothesis { course, mean, covariance }
             })
