@@ -7,7 +7,9 @@ use nalgebra::{DMatrix, DVector};
 use super::{
     family_fit::{Addition, Fit, FrameScatter, deviations},
     innovations::InnovationSeries,
-    wrong_family::{WrongFamily, left_out_by, name_of},
+    to_and_fro::{ChangeOfShape, ToAndFro},
+    unmodelled_estimate::UnmodelledEstimate,
+    wrong_family::{Found, WrongFamily, left_out_by, name_of},
 };
 use crate::{
     tuning::family as tuning,
@@ -46,31 +48,6 @@ pub(crate) struct FamilyTests {
     told: OnceLock<UnmodelledEstimate>,
 }
 
-/// What the outlines do beside their motion, as far as it is told.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct UnmodelledEstimate {
-    /// What is there, by the noise of the points.
-    pub(crate) family: Option<WrongFamily>,
-    /// Whether that is beyond doubt: it is there also by what frames scatter, and in more than one stretch of them.
-    pub(crate) is_told: bool,
-    /// Displacement of the outlines that is seen of that, root mean square, normalised.
-    pub(crate) displacement: f64,
-    /// Second moments of the sizes of the motions that may be there.
-    pub(crate) moments: UnmodelledMatrix,
-}
-
-impl UnmodelledEstimate {
-    /// The shape changes as well, which is said where nothing else is beyond doubt; a displacement that is known already counts.
-    pub(crate) fn add_change_of_shape(&mut self, displacement: f64, is_told: bool) {
-        if self.family.is_none() {
-            self.displacement = displacement;
-        }
-        if is_told || self.family.is_none() {
-            (self.family, self.is_told) = (Some(WrongFamily::Shape), is_told);
-        }
-    }
-}
-
 impl FamilyTests {
     /// Adds what a frame says of an object whose centroid is at a distance from where it was first, with the time from frame to frame; `sigma` is the
     /// deviation of the noise of a point, and `variance` that which dependence along the contour makes of it.
@@ -99,8 +76,8 @@ impl FamilyTests {
     }
 
     fn estimated(&self, model: MotionModel, of_side: f64) -> UnmodelledEstimate {
-        let mut estimate =
-            UnmodelledEstimate { family: None, is_told: false, displacement: 0.0, moments: UnmodelledMatrix::zeros() };
+        let moments = UnmodelledMatrix::zeros();
+        let mut estimate = UnmodelledEstimate { family: None, is_beyond_doubt: false, displacement: 0.0, moments };
         if self.series.frames() < tuning::FEWEST_FRAMES || self.weight <= 0.0 {
             return estimate;
         }
@@ -109,7 +86,7 @@ impl FamilyTests {
         let dependence = self.series.dependence();
         let scatter = self.scatter.about(&self.fit(&ALL));
         let mut known = self.fit(&[]);
-        let mut found = Vec::new();
+        let (mut found, mut beyond_doubt): (Vec<Found>, Vec<Found>) = Default::default();
         loop {
             let mut clearest: Option<(WrongFamily, Addition)> = None;
             for (family, members) in groups.iter().copied() {
@@ -124,19 +101,25 @@ impl FamilyTests {
             };
             let displacement = (addition.fit.squared / self.weight).sqrt();
             let is_found = addition.evidence() > tuning::SIGNIFICANT && displacement > least;
-            let is_told = addition.evidence_beside(scatter) > tuning::SIGNIFICANT;
+            let is_beyond_doubt = addition.evidence_beside(scatter) > tuning::SIGNIFICANT;
             let beside = ((addition.fit.squared - known.squared).max(0.0) / self.weight).sqrt();
             known = addition.fit;
             if !is_found {
                 break;
             }
             found.push((family, beside));
-            estimate.is_told |= is_told;
+            if is_beyond_doubt {
+                beyond_doubt.push((family, beside));
+            }
             estimate.displacement = displacement;
         }
         let read_out = known.place_of(READ_OUT).map_or(0.0, |at| known.sizes[at].abs());
         let off = known.off_a_lens().map_or(0.0, |squared| deviations(squared, 2.0));
-        estimate.family = name_of(&found, read_out / self.step, off);
+        let named = if beyond_doubt.is_empty() { &found } else { &beyond_doubt };
+        estimate.family = name_of(named, read_out / self.step, off);
+        // Points that are rounded together change the shape.
+        let may_be_rounding = estimate.family == Some(WrongFamily::Shape) && estimate.displacement <= of_side;
+        estimate.is_beyond_doubt = !beyond_doubt.is_empty() && !may_be_rounding;
         for (a, i) in known.numbers.iter().enumerate() {
             for (b, j) in known.numbers.iter().enumerate() {
                 estimate.moments[(*i, *j)] = known.sizes[a] * known.sizes[b] + known.covariance[(a, b)];
@@ -147,10 +130,10 @@ impl FamilyTests {
                 self.add_possible(&mut estimate.moments, &known, (members, model), &dependence);
             }
         }
-        if !estimate.is_told
-            && let Some((displacement, is_told)) = self.change_of_shape((least, of_side), &dependence)
+        if !estimate.is_beyond_doubt
+            && let Some(change) = self.change_of_shape(scatter, (least, of_side), &dependence)
         {
-            estimate.add_change_of_shape(displacement, is_told);
+            estimate.add_change_of_shape(change);
         }
         estimate
     }
@@ -200,30 +183,26 @@ impl FamilyTests {
         }
     }
 
-    /// Whether the shape changes to and fro, and by what displacement: all motions that are left out together are more than none, or one of them has a
-    /// larger mean square than noise, or varies slowly. And whether that is beyond doubt: it displaces more than rounding does, and does not vary in
-    /// one stretch alone of the frames that tell it.
-    fn change_of_shape(&self, (least, of_side): (f64, f64), dependence: &UnmodelledVector) -> Option<(f64, bool)> {
-        let n = self.series.frames() as f64;
-        if let Some(all) = self.with(&self.fit(&[]), &ALL, dependence) {
+    /// Whether the shape changes: all motions that are left out together are more than none, or one of them comes and goes. And whether that is
+    /// beyond doubt: by what frames scatter, and by more than the rounding of a side.
+    fn change_of_shape(
+        &self,
+        scatter: f64,
+        (least, of_side): (f64, f64),
+        dependence: &UnmodelledVector,
+    ) -> Option<ChangeOfShape> {
+        let together = self.with(&self.fit(&[]), &ALL, dependence).and_then(|all| {
             let displacement = (all.fit.squared / self.weight).sqrt();
-            if all.evidence() > tuning::SIGNIFICANT && displacement > least {
-                return Some((displacement, displacement > of_side));
-            }
+            let is_there = all.evidence() > tuning::SIGNIFICANT && displacement > least;
+            let is_beyond_doubt = all.evidence_beside(scatter) > tuning::SIGNIFICANT && displacement > of_side;
+            is_there.then_some((displacement, is_beyond_doubt))
+        });
+        if together.is_some_and(|(_, is_beyond_doubt)| is_beyond_doubt) {
+            return together;
         }
-        let most = (1.0 + tuning::SIGNIFICANT * (2.0 / n).sqrt()).max(tuning::SHAPE_CHANGES);
-        let largest = |slow: &UnmodelledVector, least: f64| {
-            let changes = |i: &usize| self.series.mean_square(*i) > most || slow[*i] > tuning::SIGNIFICANT;
-            let sizes = ALL.into_iter().filter(changes).map(|i| (self.squares[i] / n).sqrt());
-            sizes.max_by(f64::total_cmp).filter(|size| *size > least)
-        };
-        let slow = self.series.slow_part();
-        let displacement = largest(&slow, least)?;
-        let lasting = self.series.lasting_slow_part();
-        // Where few frames tell it there are no others to show that it has passed.
-        let by_most = |i: usize| self.told_by[i] > tuning::MOST_TELL * n;
-        let lasting = UnmodelledVector::from_fn(|i, _| if by_most(i) { lasting[i] } else { slow[i] });
-        Some((displacement, largest(&lasting, least.max(of_side)).is_some()))
+        let one = ToAndFro { series: &self.series, squares: &self.squares, told_by: &self.told_by };
+        let one = one.change_of_shape(scatter, (least, of_side));
+        [together, one].into_iter().flatten().reduce(|a, b| (a.0.max(b.0), a.1 || b.1))
     }
 
     /// The motions known with others; `None` where these are none.
@@ -270,7 +249,7 @@ mod tests {
     use rand_distr::{Distribution as _, StandardNormal};
 
     use super::*;
-    use crate::dynamics::wrong_family::{GROUPS, OF_LENS};
+    use crate::{dynamics::wrong_family::GROUPS, update::GROWTH};
 
     const SIGMA: f64 = 0.01;
     const RIGID: MotionModel = MotionModel::Rigid;
@@ -307,13 +286,37 @@ mod tests {
     fn what_frames_scatter_as_much_as_they_show_is_not_beyond_doubt() {
         let mut sizes = UnmodelledVector::zeros();
         sizes[PERSPECTIVE[0]] = 0.004;
-        // Seven deviations by the noise; two by what frames scatter. Sides are rounded by more than that displaces.
-        let told = [1.0, 3.0].map(|noise| {
-            let tests = after_frames_with(noise, 40, &sizes, 7);
-            let estimate = tests.estimate(RIGID, SIGMA);
-            (estimate.family.is_some(), estimate.is_told)
+        // Seven deviations by the noise; two by what frames scatter. Whether sides are rounded by more than that displaces or not at all.
+        for of_side in [0.0, SIGMA] {
+            let told = [1.0, 3.0].map(|noise| {
+                let tests = after_frames_with(noise, 40, &sizes, 7);
+                let estimate = tests.estimate(RIGID, of_side);
+                (estimate.family.is_some(), estimate.is_beyond_doubt)
+            });
+            assert_eq!(told, [(true, true), (true, false)], "{of_side}");
+        }
+    }
+
+    #[test]
+    fn noise_that_is_more_than_it_is_taken_to_be_is_no_change_of_shape_beyond_doubt() {
+        let told = (0..200).filter(|seed| {
+            let tests = after_frames_with(3.0, 40, &UnmodelledVector::zeros(), *seed);
+            tests.estimate(RIGID, 0.0).is_beyond_doubt
         });
-        assert_eq!(told, [(true, true), (true, false)]);
+        assert_eq!(told.count(), 0);
+    }
+
+    #[test]
+    fn what_is_beyond_doubt_has_its_name_whatever_else_may_be_there() {
+        let mut sizes = UnmodelledVector::zeros();
+        (sizes[READ_OUT], sizes[GROWTH]) = (0.02, 0.0055);
+        let names = [1.0, 3.0].map(|noise| {
+            let tests = after_frames_with(noise, 40, &sizes, 7);
+            let estimate = tests.estimate(RIGID, 0.0);
+            (estimate.family, estimate.is_beyond_doubt)
+        });
+        // Growth by ten deviations of the noise, and by four of what frames scatter.
+        assert_eq!(names, [(Some(WrongFamily::Shape), true), (Some(WrongFamily::RollingShutter), true)]);
     }
 
     #[test]
@@ -324,8 +327,9 @@ mod tests {
             let mut sizes = UnmodelledVector::zeros();
             sizes[member] = 0.02;
             let tests = after(40, &sizes, 7);
-            let UnmodelledEstimate { family: found, is_told, displacement, moments } = tests.estimate(RIGID, 0.0);
-            assert_eq!((*found, *is_told), (Some(family), true));
+            let UnmodelledEstimate { family: found, is_beyond_doubt, displacement, moments } =
+                tests.estimate(RIGID, 0.0);
+            assert_eq!((*found, *is_beyond_doubt), (Some(family), true));
             let size = moments[(member, member)].sqrt();
             assert!((size / 0.02 - 1.0).abs() < 0.1, "{family:?}: {size}");
             // A square of 0.02 times an information of about 9 over a weight of 50.
@@ -367,22 +371,5 @@ mod tests {
         assert!((0.9..1.1).contains(&(unknown / beforehand)), "{unknown} {beforehand}");
         let [many, few] = [1000, 10].map(|frames| second_moment(frames, 1e-3));
         assert!(few < 0.5 * beforehand && many < 0.1 * few, "{many} {few} {beforehand}");
-    }
-
-    #[test]
-    fn nothing_is_said_of_a_lens_of_which_outlines_do_not_tell_all() {
-        // A lens of strength 0.02 with its middle at (0.5, -0.3), of which a stretch and the derivative by x may be taken for each other.
-        let mut sizes = UnmodelledVector::zeros();
-        for (number, size) in OF_LENS.into_iter().zip([0.0032, -0.006, 0.02, -0.01, 0.006]) {
-            sizes[number] = size;
-        }
-        let [all, some] = [0.0, 1.0].map(|alike| {
-            let mut information = UnmodelledMatrix::identity() * 1e6;
-            information[(OF_LENS[0], OF_LENS[3])] = alike * 1e6;
-            information[(OF_LENS[3], OF_LENS[0])] = alike * 1e6;
-            let tests = FamilyTests { information, score: information * sizes, ..FamilyTests::default() };
-            tests.fit(&OF_LENS).off_a_lens()
-        });
-        assert!(all.is_some_and(|off| off < 1e-6) && some.is_none(), "{all:?} {some:?}");
     }
 }

@@ -89,8 +89,8 @@ impl Addition {
     }
 }
 
-/// How far frames scatter about what they agree on. By the noise of the points alone the mean square is 1; where a pose is not what it is taken to be,
-/// a map was learnt in such poses, or all points of a side are rounded together, it is more, and what frames agree on is known less well.
+/// How far frames scatter about what they agree on. By the noise of the points alone the mean square is 1. Where a pose is not what it is taken to
+/// be, a map was learnt in such poses, or all points of a side are rounded together, it is more, and what frames agree on is known less well.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct FrameScatter {
@@ -179,5 +179,21 @@ mod tests {
             let found = scatter.about(&common) / (noise * noise);
             assert!((0.85..1.1).contains(&found), "{noise} {is_known}: {found}");
         }
+    }
+
+    #[test]
+    fn nothing_is_said_of_a_lens_of_which_outlines_do_not_tell_all() {
+        // A lens of strength 0.02 with its middle at (0.5, -0.3), of which a stretch and the derivative by x may be taken for each other.
+        let mut sizes = UnmodelledVector::zeros();
+        for (number, size) in OF_LENS.into_iter().zip([0.0032, -0.006, 0.02, -0.01, 0.006]) {
+            sizes[number] = size;
+        }
+        let [all, some] = [0.0, 1.0].map(|alike| {
+            let mut information = UnmodelledMatrix::identity() * 1e6;
+            information[(OF_LENS[0], OF_LENS[3])] = alike * 1e6;
+            information[(OF_LENS[3], OF_LENS[0])] = alike * 1e6;
+            Fit::of((&information, &(information * sizes)), &OF_LENS).off_a_lens()
+        });
+        assert!(all.is_some_and(|off| off < 1e-6) && some.is_none(), "{all:?} {some:?}");
     }
 }

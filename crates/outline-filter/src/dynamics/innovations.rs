@@ -133,22 +133,29 @@ impl<const N: usize> InnovationSeries<N> {
         squares.fold(mean.component_mul(&mean), |sum, square| sum + square)
     }
 
-    /// How much larger the slow part of each component is than that of a white series of unit variance, in deviations: of the sum of the
+    /// Variance of each component that is white, or changes fast besides changing slowly: half of the mean square of its changes from frame to frame
+    /// (J. von Neumann, Distribution of the ratio of the mean square successive difference to the variance, 1941).
+    pub(crate) fn fast_variance(&self) -> SVector<f64, N> {
+        (self.squares - self.products).map(|sum| sum.max(0.0) / self.frames.max(1) as f64)
+    }
+
+    /// How much larger the slow part of each component is than that of a white series of a variance, in deviations: of the sum of the
     /// squares of its mean and first cosines, by Fisher's approximation of the chi-square distribution.
-    pub(crate) fn slow_part(&self) -> SVector<f64, N> {
-        self.slow_part_without(0..0)
+    pub(crate) fn slow_part(&self, variance: &SVector<f64, N>) -> SVector<f64, N> {
+        self.slow_part_without(0..0, variance)
     }
 
     /// As [`slow_part`](Self::slow_part), were any one stretch as the others are: what follows from a map that was learnt in wrong poses, before
     /// the motion was known or after a sudden change of it, is in one alone.
-    pub(crate) fn lasting_slow_part(&self) -> SVector<f64, N> {
+    pub(crate) fn lasting_slow_part(&self, variance: &SVector<f64, N>) -> SVector<f64, N> {
         let count = self.blocks.len();
         let stretch = count.div_ceil(tuning::STRETCHES).max(1);
         let stretches = (0..count).step_by(stretch).map(|from| from..(from + stretch).min(count));
-        stretches.map(|stretch| self.slow_part_without(stretch)).fold(self.slow_part(), |least, part| least.inf(&part))
+        let without = stretches.map(|stretch| self.slow_part_without(stretch, variance));
+        without.fold(self.slow_part(variance), |least, part| least.inf(&part))
     }
 
-    fn slow_part_without(&self, left_out: Range<usize>) -> SVector<f64, N> {
+    fn slow_part_without(&self, left_out: Range<usize>, variance: &SVector<f64, N>) -> SVector<f64, N> {
         let count = self.blocks.len();
         if self.frames < tuning::FEWEST_CORRELATED || count <= tuning::SLOW {
             return SVector::zeros();
@@ -156,8 +163,10 @@ impl<const N: usize> InnovationSeries<N> {
         let by_chance = (2.0 * (tuning::SLOW + 1) as f64 - 1.0).sqrt();
         let kept = 1.0 - left_out.len() as f64 / count as f64;
         let frames = self.frames as f64;
-        // Squares of sums over the frames that are kept; over all of them they would be larger by the square of their share.
-        (self.slow_squares(left_out) / (kept * kept * frames)).map(|sum| (2.0 * sum).sqrt() - by_chance)
+        // Were the stretch as the others are, sums over all frames would be those over the kept ones divided by the share of these, and their squares
+        // by its square.
+        let squares = self.slow_squares(left_out) / (kept * kept * frames);
+        squares.zip_map(variance, |sum, variance| (2.0 * sum / variance).sqrt() - by_chance)
     }
 
     /// Correlation of neighbours in time, over k components.
@@ -287,8 +296,11 @@ mod tests {
                 let slow = if shown_in.contains(&t) { size * (0.05 * f64::from(t)).cos() } else { 0.0 };
                 series.add(&SVector::from([noise + slow]), 1);
             }
-            assert_eq!(series.slow_part()[0] > 5.0, !shown_in.is_empty(), "{shown_in:?}");
-            assert_eq!(series.lasting_slow_part()[0] > 5.0, lasts, "{shown_in:?}: {}", series.lasting_slow_part());
+            let unit = SVector::from([1.0]);
+            let [slow, lasting] = [series.slow_part(&unit)[0], series.lasting_slow_part(&unit)[0]];
+            assert_eq!(slow > 5.0, !shown_in.is_empty(), "{shown_in:?}: {slow}");
+            assert_eq!(lasting > 5.0, lasts, "{shown_in:?}: {lasting}");
+            assert!((0.6..1.6).contains(&series.fast_variance()[0]), "{shown_in:?}: {}", series.fast_variance());
         }
     }
 }

@@ -21,13 +21,16 @@ mod perspective;
 mod setting;
 mod steady_change;
 mod step;
+mod to_and_fro;
 mod turned_chains;
+mod unmodelled_estimate;
 mod wrong_family;
 
 pub(crate) use centred::{CentredDeviations, CentredPose, Summary, centred_order, centred_velocity};
 pub(crate) use combination::Purpose;
 pub(crate) use dynamics_filter::DynamicsFilter;
-pub(crate) use family::{FamilyTests, UnmodelledEstimate};
+pub(crate) use family::FamilyTests;
 pub(crate) use perspective::is_beyond_linear;
 pub use setting::{Dynamics, DynamicsWeights, UnknownDynamics};
+pub(crate) use unmodelled_estimate::UnmodelledEstimate;
 pub use wrong_family::WrongFamily;

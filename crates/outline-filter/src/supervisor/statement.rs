@@ -77,7 +77,7 @@ impl MotionFilter {
             all = all.widened(model, &centroid, &CentredDeviations::from_element(1.0), [&pose, &motion])?;
         }
         // Edges may move points by as much, and that is in the deviations already.
-        let family = unmodelled.family.filter(|_| unmodelled.is_told && displacement > edge_uncertainty);
+        let family = unmodelled.family.filter(|_| unmodelled.is_beyond_doubt && displacement > edge_uncertainty);
         Some(Statement { random, all, family })
     }
 

@@ -63,10 +63,10 @@ impl Track {
     pub(super) fn unmodelled_estimate(&self) -> UnmodelledEstimate {
         let of_side = self.noise.rounding().of_side();
         let mut estimate = *self.family.estimate(self.belief.model, of_side);
-        if !estimate.is_told
+        if !estimate.is_beyond_doubt
             && let Some(displacement) = self.change_of_shape()
         {
-            estimate.add_change_of_shape(displacement, true);
+            estimate.add_change_of_shape((displacement, displacement > of_side));
         }
         // An outline that is hardly out of round changes by as much as that as it turns, which is not followed where it is not seen.
         let may_be_turn = estimate.family.is_some_and(|family| family != WrongFamily::Growth) && self.turn_is_unseen();
