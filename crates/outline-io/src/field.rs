@@ -39,8 +39,8 @@ impl Field {
         x == 0 || y == 0 || x + 1 == self.width || y + 1 == self.height
     }
 
-    /// The grey values nearest to samples from 0 to 255, halves upwards: what `f32::round` says, which is a call of the library for each of them where
-    /// the processor that is built for has no instruction for it.
+    /// The grey values nearest to samples from 0 to 255, halves upwards: what `f32::round` says, which is a call of the library for each of them
+    /// where the processor that is built for has no instruction for it.
     pub(crate) fn nearest_grey_values(&self) -> Vec<u8> {
         let nearest = |value: &f32| {
             let below = *value as i32;

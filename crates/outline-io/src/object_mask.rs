@@ -105,11 +105,16 @@ struct ValueRange {
 }
 
 impl ValueRange {
-    /// From the lowest to the highest of the values that are set, as those beyond a threshold are.
+    /// From the lowest to the highest of the values that are set, all of which must be, as those beyond a threshold are.
     fn of(set: impl Fn(u8) -> bool) -> Self {
         let lowest = (0..=u8::MAX).find(|value| set(*value));
         let highest = (0..=u8::MAX).rfind(|value| set(*value));
-        Self { lowest: lowest.unwrap_or(0), more: highest.zip(lowest).map(|(highest, lowest)| highest - lowest) }
+        let bounds = lowest.zip(highest);
+        debug_assert!(
+            bounds.is_none_or(|(lowest, highest)| (lowest..=highest).all(set)),
+            "values between others are not set"
+        );
+        Self { lowest: lowest.unwrap_or(0), more: bounds.map(|(lowest, highest)| highest - lowest) }
     }
 
     #[inline(always)]

@@ -22,8 +22,11 @@ use crate::{
 /// Fewest pictures that tell how objects are best found.
 const FEWEST_PICTURES: usize = 3;
 
-/// Pictures whose edges tell how well outlines are known, and pictures that tell whether they are drawn on whole pixels.
+/// Pictures whose edges tell how well outlines are known.
 const EDGES_LOOKED_AT: usize = 6;
+
+/// Pictures whose edges and steps tell whether they are drawn on whole pixels: a speed that is off a whole number of pixels by a tenth shows a step
+/// of another pixel in one picture of ten.
 const STEPS_LOOKED_AT: usize = 12;
 
 /// Most pixels of these pictures, all together: those of one of the largest.

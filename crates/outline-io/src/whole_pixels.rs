@@ -1,7 +1,7 @@
 //! Whether what is seen was drawn on whole pixels: by its edges, or by how it moves.
 use std::collections::HashMap;
 
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 
 use crate::picture_outlines::TracedFrame;
 use crate::trace::TracedOutline;
@@ -10,8 +10,10 @@ use crate::trace_settings::TraceSettings;
 /// How far a step may be off a whole number of pixels to be one, in pixels.
 const WHOLE_STEP: f64 = 0.05;
 
-/// How many steps have to be seen at least, and what share of them has to be whole ones. A step along the rows or columns is whole by chance in one
-/// case of ten, four of five in one of two thousand.
+/// How many steps have to be seen at least, and what share of them has to be whole ones. A single step along the rows or columns is whole by chance
+/// in one case of ten. Steps of a constant motion are all the same, and all of them whole in one of ten: they tell nothing. Those of an object that
+/// is put on whole pixels at other speeds differ by a pixel now and then, as 4, 4 and 5 do, and no step that is drawn where it is does so. This is
+/// demanded besides. Of steps that change by their motion, each is whole by a chance of its own, four of five in one case of two thousand.
 const FEWEST_STEPS: usize = 4;
 const MOST_STEPS: f64 = 0.8;
 
@@ -21,12 +23,13 @@ const MOVES: f64 = 0.5;
 /// Share of its area that an object may differ by from one picture to the next to be seen as a whole in both.
 const SAME_AREA: f64 = 0.05;
 
-/// Whether most of the edges of these pictures lie between pixels, or what moves in them moves by whole pixels.
+/// Whether most of the edges of these pictures lie between pixels, or what moves in them moves by whole pixels, and not always by as many.
 pub(crate) fn are_drawn_on(pictures: impl Iterator<Item = TracedFrame>, trace: &TraceSettings) -> bool {
     let pixel = trace.pixel_grid(0).pixel_size();
     let (mut edges, mut on_pixels) = (0_usize, 0_usize);
     let (mut steps, mut whole) = (0_usize, 0_usize);
     let mut before: HashMap<u64, (Point2<f64>, f64)> = HashMap::new();
+    let (mut first_steps, mut differ) = (HashMap::<u64, Vector2<f64>>::new(), false);
     for TracedFrame { objects, .. } in pictures {
         let mut seen = HashMap::new();
         for (name, TracedOutline { edges: fit, centre, area, touches_border, .. }) in objects.unwrap_or_default() {
@@ -42,12 +45,17 @@ pub(crate) fn are_drawn_on(pictures: impl Iterator<Item = TracedFrame>, trace: &
             let step = (centre - from).component_div(&pixel);
             if step.amax() > MOVES && (area / area_before - 1.0).abs() < SAME_AREA {
                 steps += 1;
-                whole += usize::from(step.iter().all(|along| (along - along.round()).abs() < WHOLE_STEP));
+                let pixels = step.map(f64::round);
+                if (step - pixels).amax() < WHOLE_STEP {
+                    whole += 1;
+                    // What turns back goes on at its speed.
+                    differ |= *first_steps.entry(name).or_insert(pixels.abs()) != pixels.abs();
+                }
             }
         }
         before = seen;
     }
-    2 * on_pixels > edges || (steps >= FEWEST_STEPS && whole as f64 >= MOST_STEPS * steps as f64)
+    2 * on_pixels > edges || (differ && steps >= FEWEST_STEPS && whole as f64 >= MOST_STEPS * steps as f64)
 }
 
 #[cfg(test)]
@@ -86,6 +94,14 @@ mod tests {
         let place = |k: f64| 20.0 + 4.33 * k;
         assert!(is_drawn(|x, y, k| bordered(x, y, place(k).round(), 21.0)));
         assert!(!is_drawn(|x, y, k| bordered(x, y, place(k), 21.3)));
+    }
+
+    #[test]
+    fn a_constant_motion_by_nearly_whole_pixels_that_is_drawn_where_it_is_is_not_one_by_whole_pixels() {
+        let place = |k: f64| 20.3 + 3.02 * k;
+        assert!(!is_drawn(|x, y, k| bordered(x, y, place(k), 21.3)));
+        // Nor where it turns back.
+        assert!(!is_drawn(|x, y, k| bordered(x, y, place((k - 4.0).abs()), 21.3)));
     }
 
     #[test]

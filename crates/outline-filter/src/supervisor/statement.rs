@@ -34,8 +34,8 @@ impl MotionFilter {
         self.stated.get_or_init(|| self.stated_now()).as_ref()
     }
 
-    /// The covariance that is stated: what the track knows, with the hypotheses of dynamics, the dependence of frames and what contradicts it (random);
-    /// then what the motion model leaves out, edges and rounding (systematic).
+    /// The covariance that is stated: what the track knows, with the hypotheses of dynamics, the dependence of frames and what contradicts it
+    /// (random); then what the motion model leaves out, edges and rounding (systematic).
     fn stated_now(&self) -> Option<Statement> {
         let track = self.track.as_ref().filter(|track| track.is_shown())?;
         let own = track.summary()?;
@@ -62,7 +62,7 @@ impl MotionFilter {
         if [displacement, edge_uncertainty, pixel].iter().any(|length| *length > 0.0) {
             // Rounding to pixels is a saw tooth as the object moves, whose mean falls with the teeth that the frames show.
             let span = track.span_of_motion(self.history.is_constant());
-            let rounding = if pixel > 0.0 { of_side / track.pixels_passed(span, pixel).max(1.0) } else { 0.0 };
+            let rounding = if pixel > 0.0 { of_side / track.rounding_teeth_seen(span, pixel).max(1.0) } else { 0.0 };
             let [pose, motion] = track.systematic(edge_uncertainty.hypot(rounding), span);
             // What the motion model does not have need not be constant.
             let [mut of_pose, mut of_motion] = track.systematic(displacement, track.span_of_motion(false));
@@ -161,8 +161,8 @@ impl MotionFilter {
     }
 
     /// Other angular velocities, in rad/s, that explain the outlines as well as the one stated: those of the turns of
-    /// [`rival_turns`](Self::rival_turns). Empty where those are, and where it is not stated. Where omega is not one of the parameters, the mean angular
-    /// velocity (a2 - a3) / 2 of an affine or projective motion stands for it.
+    /// [`rival_turns`](Self::rival_turns). Empty where those are, and where it is not stated. Where omega is not one of the parameters, the mean
+    /// angular velocity (a2 - a3) / 2 of an affine or projective motion stands for it.
     #[must_use]
     pub fn aliases(&self) -> Vec<f64> {
         if self.turn_hypotheses.rival_turns().is_empty() {

@@ -1,13 +1,11 @@
 //! What a track says of the motion.
 use freeform_estimate::{MotionEstimate, MotionState, NormalisedState, PointVelocity, is_worth};
-use freeform_riccati::{
-    MAX_PARAMETERS, MotionModel, ParameterKind, ParameterVector, ProjectiveMotion, logarithm, map_point,
-};
+use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterKind, ParameterVector, logarithm, map_point};
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Point2, SVector, Vector2};
 
 use super::Track;
 use crate::{
-    belief::{Belief, StateMatrix, StateVector, scaled_inverse},
+    belief::{StateMatrix, StateVector, scaled_inverse},
     dynamics::{
         CentredDeviations, Dynamics, DynamicsFilter, Summary, UnmodelledEstimate, centred_order, is_beyond_linear,
     },
@@ -53,8 +51,8 @@ impl Track {
         is_finite.then_some(Summary { pose: belief.pose, motion: belief.motion, covariance })
     }
 
-    /// Deviations along each axis, normalised, of what a shift of the whole outline makes of its place since the first frame, and of the velocity of its
-    /// plane, if what stretches the outline is light from a side: that shifts it besides, by as much in the picture while the object turns.
+    /// Deviations along each axis, normalised, of what a shift of the whole outline makes of its place since the first frame, and of the velocity of
+    /// its plane, if what stretches the outline is light from a side: that shifts it besides, by as much in the picture while the object turns.
     pub(crate) fn shift_by_light(&self, unmodelled: &UnmodelledEstimate) -> [f64; 2] {
         // Stretch and skew, or the edges that stand for them.
         let second_harmonic = SHEAR.iter().map(|l| unmodelled.moments[(*l, *l)]).sum::<f64>().max(0.0).sqrt();
@@ -92,20 +90,6 @@ impl Track {
         shortest.max(memory.step.min(memory.span)).max(f64::MIN_POSITIVE)
     }
 
-    /// How many saw teeth the rounding of the points to pixels of a size, image lengths, has gone through in the time `span` that the motion is
-    /// known from: the pixels that they have moved on, root mean square. Frames show less of them where points move by more than half a pixel from
-    /// one to the next, and none where they move by whole pixels, as they lie on these alike then.
-    pub(crate) fn pixels_passed(&self, span: f64, pixel: f64) -> f64 {
-        let Belief { model, pose, motion, memory, .. } = &self.belief;
-        let motion = ProjectiveMotion::of_generator(&model.generator(&motion[..model.parameter_count()]));
-        let step = if memory.step > 0.0 { memory.step } else { span };
-        let pixels = step * self.reference.radius / pixel;
-        let cells = self.map.cells();
-        let seen = |velocity: Vector2<f64>| (velocity * pixels).map(|along| along - along.round());
-        let squares = cells.iter().map(|cell| seen(motion.velocity(&map_point(pose, &cell.centre))).norm_squared());
-        (squares.sum::<f64>() / cells.len().max(1) as f64).sqrt() * span / step
-    }
-
     /// Whether the object moves beyond doubt: by the squared motion in its covariance.
     pub(crate) fn moves(&self) -> bool {
         let k = self.belief.parameter_count();
@@ -137,8 +121,8 @@ impl Track {
         DynamicsFilter::begin(belief.model, setting, (&summary, &given_outline), place, belief.memory.step)
     }
 
-    /// Covariance of the motion parameters in the order of the model, image units; `None` where it is beyond any number, or where the motion is known so
-    /// little that rounding has left something that is no covariance.
+    /// Covariance of the motion parameters in the order of the model, image units; `None` where it is beyond any number, or where the motion is known
+    /// so little that rounding has left something that is no covariance.
     pub(crate) fn covariance_of(&self, summary: &Summary) -> Option<DMatrix<f64>> {
         let (model, k) = (self.belief.model, self.belief.parameter_count());
         let to_image = self.reference.to_image();
@@ -203,7 +187,8 @@ impl Track {
         Some(hanging.into_iter().fold(estimate, MotionEstimate::with_unobservable))
     }
 
-    /// Pose and motion with their joint covariance at a time in the unit of the track, with the parameters marked that `observable` says nothing is known of.
+    /// Pose and motion with their joint covariance at a time in the unit of the track, with the parameters marked that `observable` says nothing is
+    /// known of.
     pub(crate) fn state_of(
         &self,
         summary: &Summary,

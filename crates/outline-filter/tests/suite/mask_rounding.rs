@@ -24,11 +24,19 @@ fn stated(settings: FilterSettings, frames: &[Frame]) -> [Vec<f64>; 3] {
     [list(&|p| p.value), list(&|p| p.standard_deviation), list(&|p| p.systematic_deviation)]
 }
 
+/// Teeth of the rounding that a coordinate shows which moves on by a step in pixels, in so many steps: of all fractions, near which it shows as
+/// many phases as the denominator says and new ones as it drifts, the fewest.
+fn teeth_seen(step: f64, steps: f64) -> f64 {
+    let near = |phases: f64| steps * phases * (phases * step - (phases * step).round()).abs();
+    let others = (2..=steps as u32).map(f64::from).map(|phases| near(phases).max(phases));
+    others.fold(near(1.0), f64::min)
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(8))]
 
     #[test]
-    fn the_rounding_of_masks_counts_the_less_the_more_pixels_the_object_has_moved_on(
+    fn the_rounding_of_masks_counts_the_less_the_more_of_its_teeth_the_frames_show(
         omega in -1.5..1.5_f64, b1 in -0.5..0.5_f64, pixel in 0.003..0.05_f64, seed in 0..1000_u64,
     ) {
         let rounding = pixel / 12.0_f64.sqrt();
@@ -42,17 +50,18 @@ proptest! {
             let [mask, both] = [of_masks, with_edges].map(|settings| stated(settings, &frames));
             prop_assert_eq!(&mask[0], &both[0]);
 
-            // The way of the points beyond whole pixels from frame to frame, root mean square: all of them move at a constant speed.
+            // The teeth of the rounding that frames show of the points, root mean square: all of them move at a constant speed.
             let (last, velocity) = (&frames[FRAMES - 1], ProjectiveMotion::of_generator(&motion.generator()));
             let step = last.time - frames[FRAMES - 2].time;
-            let beyond_whole = |p: &Point2<f64>| (velocity.velocity(p) * step / pixel).map(|along| along - along.round());
+            let steps = (last.time - frames[0].time) / step;
+            let seen = |p: &Point2<f64>| (velocity.velocity(p) * step / pixel).map(|along| teeth_seen(along, steps));
             let points: Vec<Point2<f64>> = last.outline.pieces().flat_map(|piece| piece.points.to_vec()).collect();
-            let mean = points.iter().map(|p| beyond_whole(p).norm_squared()).sum::<f64>() / points.len() as f64;
-            let pixels = (mean.sqrt() * (last.time - frames[0].time) / step).max(1.0);
+            let mean = points.iter().map(|p| seen(p).norm_squared()).sum::<f64>() / points.len() as f64;
+            let teeth = mean.sqrt().max(1.0);
             // An edge uncertainty of the same size does not fall.
             for (mask, both) in mask[2].iter().zip(&both[2]) {
                 let share = (both * both - mask * mask) / (mask * mask);
-                prop_assert!((share.sqrt() / pixels - 1.0).abs() < 0.3, "{} {}", share.sqrt(), pixels);
+                prop_assert!((share.sqrt() / teeth - 1.0).abs() < 0.3, "{} {}", share.sqrt(), teeth);
             }
         }
     }

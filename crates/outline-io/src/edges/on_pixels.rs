@@ -37,10 +37,15 @@ fn range(pixels: &[u8; ACROSS]) -> u8 {
     pixels.iter().max().zip(pixels.iter().min()).map_or(0, |(most, least)| most - least)
 }
 
-/// The pixels of the row or column that a crossing lies on; `None` on the edge of the picture and where they are not all there.
+/// The pixels of the row or column that a crossing lies on; `None` on the edge of the picture, where they are not all there, and where the place of
+/// the crossing does not tell which of the two it is, as on a pixel.
 fn pixels_across(picture: &GrayImage, crossing: &Crossing, [left, top]: [usize; 2]) -> Option<[u8; ACROSS]> {
     let [column, row] = [crossing.x.floor(), crossing.y.floor()].map(|place| place as usize);
-    let is_along_row = crossing.x.fract() != 0.0;
+    let is_along_row = match [crossing.x, crossing.y].map(|place| place.fract() != 0.0) {
+        [true, false] => true,
+        [false, true] => false,
+        _ => return None,
+    };
     // Along it, the first is one before the two that the crossing lies between.
     let first = if is_along_row { left + column } else { top + row }.checked_sub(1)?;
     let pixel = |k: usize| {
@@ -49,4 +54,19 @@ fn pixels_across(picture: &GrayImage, crossing: &Crossing, [left, top]: [usize; 
     };
     let pixels = [pixel(0)?, pixel(1)?, pixel(2)?, pixel(3)?];
     (!crossing.at_edge).then_some(pixels)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_crossing_on_a_pixel_tells_neither_row_nor_column_and_is_left_out() {
+        let picture = GrayImage::from_fn(12, 12, |x, _| image::Luma([if x < 6 { 200 } else { 50 }]));
+        let at = |x: f64, y: f64| Crossing { x, y, at_edge: false };
+        assert_eq!(pixels_across(&picture, &at(5.5, 4.0), [0, 0]), Some([200, 200, 50, 50]));
+        assert_eq!(pixels_across(&picture, &at(5.0, 4.5), [0, 0]), Some([200; ACROSS]));
+        assert_eq!(pixels_across(&picture, &at(5.0, 4.0), [0, 0]), None);
+        assert!(share(&picture, &[at(5.5, 4.0), at(5.0, 5.0), at(5.5, 6.0)], [0, 0]) > 0.99);
+    }
 }
