@@ -1,4 +1,6 @@
-//! What changes to a hypothesis in a step: blended with it, or kept apart until a frame has told which explain it.
+//! What changes to a hypothesis in a step, a component of its mixture: blended with it at once, as in an interacting multiple model, or after the
+//! measurement, as in a generalised pseudo-Bayesian estimator of second order (C.-B. Chang and M. Athans, State estimation for discrete systems with
+//! switching parameters, 1978).
 use nalgebra::{SMatrix, SVector};
 
 use super::{
