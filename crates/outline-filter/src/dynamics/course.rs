@@ -59,9 +59,9 @@ impl Course {
     /// that the level remembers. Larger ones are those of higher levels.
     pub(super) fn acceleration_prior(self, pose_variance: &CentredVector, k: usize, seconds: f64) -> CentredVector {
         let (first, span, size) = match self {
-            Self::Accelerating { level, .. } | Self::ChangingGenerator { level } => {
+            Self::Accelerating { .. } | Self::ChangingGenerator { .. } => {
                 let first = if self.changes_rates() { 0 } else { k - 2 };
-                (first, seconds * (tuning::MEMORY * level.powf(-1.0 / 6.0)).max(1.0), tuning::FIRST_ACCELERATION)
+                (first, seconds * self.memory(), tuning::FIRST_ACCELERATION)
             }
             Self::SteadyChange { .. } => (0, seconds, steady_change::ANY),
             Self::ConstantGenerator | Self::Shaken { .. } | Self::ConstantVelocity => return CentredVector::zeros(),
@@ -119,6 +119,11 @@ impl Course {
             Self::Accelerating { level, .. } | Self::ChangingGenerator { level } => Some(level),
             Self::ConstantGenerator | Self::Shaken { .. } | Self::ConstantVelocity | Self::SteadyChange { .. } => None,
         }
+    }
+
+    /// Steps that it remembers: those over which what changes at random moves the object by as much as a pose is off.
+    pub(super) fn memory(self) -> f64 {
+        self.level().map_or(f64::INFINITY, |level| (tuning::MEMORY * level.powf(-1.0 / 6.0)).max(1.0))
     }
 
     /// Whether rates change, if anything does.

@@ -92,6 +92,11 @@ impl DynamicsFilter {
         of_any_size!(self, hypotheses => hypotheses.of_outline_now(pose))
     }
 
+    /// Steps that the motion is known from, without a limit if it is constant.
+    pub(crate) fn memory(&self) -> f64 {
+        of_any_size!(self, hypotheses => hypotheses.memory())
+    }
+
     /// Ends a step, also one whose frame has told nothing of the pose.
     pub(crate) fn end_step(&mut self) {
         of_any_size!(self, hypotheses => hypotheses.blend_arrivals());

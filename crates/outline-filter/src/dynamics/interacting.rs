@@ -312,6 +312,13 @@ impl<const N: usize> InteractingHypotheses<N> {
         weights
     }
 
+    /// Steps that the motion is known from: the fewest that a hypothesis remembers that is not ruled out, and no limit if all are constant.
+    pub(crate) fn memory(&self) -> f64 {
+        let possible =
+            self.hypotheses.iter().zip(&self.weights).filter(|(_, weight)| **weight > tuning::OUTSIDE_INTERVAL);
+        possible.map(|(hypothesis, _)| hypothesis.course.memory()).fold(f64::INFINITY, f64::min)
+    }
+
     /// Whether the hypotheses, and not a constant generator alone, say where the object is expected next.
     pub(crate) fn leads(&self) -> bool {
         self.leads

@@ -9,7 +9,7 @@ use crate::{
     dynamics::DynamicsFilter,
     prediction::ByKind,
     track::Outcome,
-    tuning::{dynamics::OUTSIDE_INTERVAL, motion_change as tuning, statement::REACH},
+    tuning::{motion_change as tuning, statement::REACH},
     update::PoseInnovation,
 };
 #[cfg(feature = "serde")]
@@ -53,9 +53,9 @@ impl MotionHistory {
         self.change.is_seen() || self.dynamics.as_ref().is_some_and(leads)
     }
 
-    /// Whether hypotheses of dynamics say that the motion is constant, in whatever sense.
-    pub(super) fn is_constant(&self) -> bool {
-        self.dynamics.as_ref().is_some_and(|dynamics| dynamics.weights().accelerating < OUTSIDE_INTERVAL)
+    /// Steps that the motion is known from, as hypotheses of dynamics say: without a limit where it is constant, in whatever sense.
+    pub(super) fn memory(&self) -> Option<f64> {
+        self.dynamics.as_ref().map(DynamicsFilter::memory)
     }
 
     /// By how many times larger the errors of the frames are than the model's, such as those of a camera that shakes: these are no change of the

@@ -61,11 +61,11 @@ impl MotionFilter {
         let [pixel, of_side] = track.rounding_of_side();
         if [displacement, edge_uncertainty, pixel].iter().any(|length| *length > 0.0) {
             // Rounding to pixels is a saw tooth as the object moves, whose mean falls with the teeth that the frames show.
-            let span = track.span_of_motion(self.history.is_constant());
+            let span = track.span_of_motion(self.history.memory());
             let rounding = if pixel > 0.0 { of_side / track.rounding_teeth_seen(span, pixel).max(1.0) } else { 0.0 };
             let [pose, motion] = track.systematic(edge_uncertainty.hypot(rounding), span);
             // What the motion model does not have need not be constant.
-            let [mut of_pose, mut of_motion] = track.systematic(displacement, track.span_of_motion(false));
+            let [mut of_pose, mut of_motion] = track.systematic(displacement, track.span_of_motion(None));
             if unmodelled.family.is_some() {
                 let [of_place, of_velocity] = track.shift_by_light(&unmodelled);
                 for i in centred_velocity(model) {

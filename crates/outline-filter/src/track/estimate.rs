@@ -82,11 +82,14 @@ impl Track {
         [pose, pose * (std::f64::consts::SQRT_2 / span)]
     }
 
-    /// Time that the motion is known from, in the filter's unit; positive. A motion that is stated as `constant`, by whatever hypothesis of
-    /// dynamics, is known from all of the frames; the memory of a constant generator is shorter where only that changes.
-    pub(crate) fn span_of_motion(&self, constant: bool) -> f64 {
+    /// Time that the motion is known from, in the filter's unit; positive. It is that of as many steps as the hypotheses of dynamics remember, and without
+    /// them that of a constant generator, which is shorter where only that changes.
+    pub(crate) fn span_of_motion(&self, steps: Option<f64>) -> f64 {
         let memory = &self.belief.memory;
-        let shortest = if constant { memory.span } else { memory.shortest(self.belief.parameter_count()) };
+        let shortest = match steps {
+            Some(steps) => memory.span.min(steps * memory.step),
+            None => memory.shortest(self.belief.parameter_count()),
+        };
         shortest.max(memory.step.min(memory.span)).max(f64::MIN_POSITIVE)
     }
 

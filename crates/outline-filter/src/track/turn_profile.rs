@@ -98,7 +98,7 @@ impl Track {
         if !self.is_all_but_round() || frames >= tuning::MEMORY {
             return None;
         }
-        let (model, span) = (self.belief.model, self.span_of_motion(false));
+        let (model, span) = (self.belief.model, self.span_of_motion(None));
         let direction = self.turn_about_centroid()?;
         let k = model.parameter_count();
         // In the first frames what is promised rests on normals of a map that follows the errors of these frames.

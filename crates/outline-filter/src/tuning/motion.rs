@@ -59,7 +59,7 @@ pub(crate) mod dynamics {
     pub(crate) const LEAVES_CHANGING: f64 = 0.000_15;
     /// How often a motion that changes becomes constant, for one change of how it changes. A body that swings looks for three or four frames at its
     /// turning points like one of a constant motion, and every frame of that speaks for it by up to sixty to one.
-    pub(crate) const BECOMES_CONSTANT: f64 = 0.01;
+    pub(crate) const BECOMES_CONSTANT: f64 = 0.1;
     /// How often a camera begins to shake, as that: cameras that shake do so from the start. A motion that changes again, or
     /// slowly, looks for some frames like one seen by a camera that shakes.
     pub(crate) const BEGINS_TO_SHAKE: f64 = 0.0001;
@@ -83,8 +83,8 @@ pub(crate) mod dynamics {
     pub(crate) const LEVELS_OF_VELOCITY: [f64; 2] = [1e-7, 1e-2];
     /// As these, where it turns with the object. Of a body that turns by a small angle from frame to frame the others say nearly the same.
     pub(crate) const LEVELS_OF_GENERATOR: [f64; 4] = [1e-5, 1e-2, 1e1, 1e4];
-    /// How far the point of an object that runs straight may be from its centroid, in RMS radii, as a deviation: noise, hidden arcs, and bodies
-    /// that are not quite even.
+    /// How far the point of an object that runs straight may be from its centroid, in RMS radii, as a deviation: noise, hidden arcs, and bodies that are
+    /// not even, as with holes and marks. Where it is farther off than this expects, a generator that changes explains it, and nothing is constant.
     pub(crate) const OFF_CENTROID: f64 = 0.02;
     /// Turn in a step, in rad, as a deviation, that the path of an object may tell where its outline does not: larger ones are no arc any more.
     pub(crate) const LARGEST_STEP_OF_PATH: f64 = 0.5;
