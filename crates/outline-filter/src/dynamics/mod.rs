@@ -18,6 +18,7 @@ mod innovations;
 mod interacting;
 mod mixing;
 mod perspective;
+mod probabilities;
 mod setting;
 mod steady_change;
 mod step;
