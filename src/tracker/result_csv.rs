@@ -8,6 +8,7 @@ use super::{
     not_stated::NotStated,
     observation::{ObjectPhase, Observation},
     result::{ObjectResult, VELOCITY_NAMES},
+    settings::Method,
 };
 use crate::adaptive_progress::AdaptiveProgress;
 
@@ -83,7 +84,7 @@ impl<W: Write> TraceWriter<W> {
 
     /// Whether there are columns for the velocity of the middle.
     fn has_velocity(&self) -> bool {
-        self.adaptive.is_none() && self.family != MotionFamily::Plane
+        self.family.has_velocity(if self.adaptive.is_some() { Method::Adaptive } else { Method::Filter })
     }
 
     /// Writes what a frame of an object gave.

@@ -109,13 +109,11 @@ impl TrajectoryRow {
             // Not even where it is.
             return NotStated::Unknown;
         }
-        match name {
-            "v1" | "v2" => self.velocity_not_stated.unwrap_or(NotStated::Unknown),
-            _ => {
-                let of_motion = self.not_stated.iter().find(|(parameter, _)| *parameter == name);
-                of_motion.map_or(self.turn_not_stated, |(_, reason)| *reason)
-            }
+        if VELOCITY_NAMES.contains(&name) {
+            return self.velocity_not_stated.unwrap_or(NotStated::Unknown);
         }
+        let of_motion = self.not_stated.iter().find(|(parameter, _)| *parameter == name);
+        of_motion.map_or(self.turn_not_stated, |(_, reason)| *reason)
     }
 
     /// The values of the row that are not stated, each with why: of pose and motion by the names of their parameters, then `v1` and `v2`. `known` is

@@ -97,28 +97,26 @@ mod tests {
 
     use super::*;
     use crate::{
-        dynamics::{correction::root_of, course::Course},
+        dynamics::{centred::CentredMatrix, correction::root_of, course::Course},
         tuning::dynamics::LEVELS,
     };
 
-    /// A hypothesis of so large a variance of every entry, its pose so far from none.
-    fn of_variance(variance: f64, off: f64) -> Hypothesis<9> {
+    /// A hypothesis of so large a variance of every entry.
+    fn of_variance(variance: f64) -> Hypothesis<9> {
         let course = Course::Accelerating { level: LEVELS[0], rates: true };
-        let mean = SVector::from_fn(|i, _| if i == 0 { off } else { 0.0 });
-        Hypothesis { course, mean, covariance: SMatrix::identity() * variance }
+        Hypothesis { course, mean: SVector::zeros(), covariance: SMatrix::identity() * variance }
     }
 
     fn measured_at(deviation: f64) -> CentredMeasurement {
         let k = MotionModel::Rigid.parameter_count();
-        let information = super::super::centred::CentredMatrix::from_fn(|i, j| f64::from(u8::from(i == j && i < k)));
+        let information = CentredMatrix::from_fn(|i, j| f64::from(u8::from(i == j && i < k)));
         let deviation = CentredVector::from_fn(|i, _| if i == 0 { deviation } else { 0.0 });
         CentredMeasurement { root: root_of(&information, k), deviation }
     }
 
     /// The likelihood of all by which a hypothesis explains a measurement, the share of those that have come to it, and its variance.
     fn apart(measurement: &CentredMeasurement, share: f64) -> (f64, f64, f64) {
-        let (mut stayed, mut arrival) =
-            (of_variance(0.01, 0.0), Arrival { number: 0, share, state: of_variance(1e6, 0.0) });
+        let (mut stayed, mut arrival) = (of_variance(0.01), Arrival { number: 0, share, state: of_variance(1e6) });
         let innovation = stayed.update(measurement).expect("regular");
         let (logarithm, _) = arrival.update(measurement, (innovation.log_likelihood, None));
         arrival.blend_into(&mut stayed);
@@ -129,12 +127,12 @@ mod tests {
     fn a_few_that_know_nothing_do_not_make_the_many_explain_what_neither_expects() {
         let measurement = measured_at(20.0);
         let (logarithm, share, _) = apart(&measurement, 1e-4);
-        let mut blended = of_variance(0.01, 0.0);
-        let few = of_variance(1e6, 0.0);
+        let mut blended = of_variance(0.01);
+        let few = of_variance(1e6);
         blended.blend((&few.mean, &few.covariance), 1e-4, 9);
         let of_blended = blended.update(&measurement).expect("regular").log_likelihood;
         // It is explained by the few alone, 1e-4 times over.
-        let alone = of_variance(1e6, 0.0).update(&measurement).expect("regular").log_likelihood;
+        let alone = of_variance(1e6).update(&measurement).expect("regular").log_likelihood;
         assert!((logarithm - alone - 1e-4_f64.ln()).abs() < 1e-6 && share > 0.999_999, "{logarithm} {alone} {share}");
         assert!(of_blended > logarithm + 5.0, "{of_blended} {logarithm}");
     }

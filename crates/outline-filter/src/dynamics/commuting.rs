@@ -28,7 +28,6 @@ impl<const N: usize> Hypothesis<N> {
                 self.mean[j] = error + dt * (motion + 0.5 * dt * acceleration);
                 self.mean[k + j] = motion + dt * acceleration;
             }
-            self.add_change_of_accelerations(step);
         } else {
             let motion = &self.mean.as_slice()[k..2 * k];
             let v = parts(&model.generator(motion)).1;
@@ -39,20 +38,21 @@ impl<const N: usize> Hypothesis<N> {
                 std::array::from_fn(|j| if j < k - 2 { motion[j] + 0.5 * dt * change_of(j) } else { 0.0 });
             let (turn, along) = model.linear_flow_with_integral(&rates[..k], dt);
             let turning = Vector2::new(self.mean[3 * k - 2], self.mean[3 * k - 1]);
+            let pushed = self.pushed_along(step);
             let (shift, later) = match self.course {
                 Course::ConstantVelocity => (v * dt + turned_along(&along, dt) * turning, v + turn * turning - turning),
-                _ if changes => (along * v + self.pushed_along(step) * turning, turn * v + along * turning),
+                _ if changes => (along * v + pushed * turning, turn * v + along * turning),
                 _ => (along * v, turn * v),
             };
-            let transition = self.transition(step, (&turn, &along, &v, &later));
+            let transition = self.transition(step, (&turn, &along, &pushed), (&v, &later));
             self.covariance = carried(&transition, &self.covariance, self.size());
             self.set_velocity(&turn, &shift, &later);
             for (j, rate) in rates.iter().enumerate().take(k - 2) {
                 self.mean[j] += dt * rate;
                 self.mean[k + j] += if changes { dt * self.mean[2 * k + j] } else { 0.0 };
             }
-            self.add_change_of_accelerations(step);
         }
+        self.add_change_of_accelerations(step);
         for j in 0..k - 2 {
             self.mean[j] += step.turned_by[j];
         }

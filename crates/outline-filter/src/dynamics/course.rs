@@ -126,8 +126,8 @@ impl Course {
         self.level().map_or(f64::INFINITY, |level| (tuning::MEMORY * level.powf(-1.0 / 6.0)).max(1.0))
     }
 
-    /// Whether rates change, if anything does.
+    /// Whether rates change, if accelerations do.
     pub(super) fn changes_rates(self) -> bool {
-        self != Self::ConstantVelocity && !matches!(self, Self::Accelerating { rates: false, .. })
+        !matches!(self, Self::Accelerating { rates: false, .. })
     }
 }

@@ -99,7 +99,7 @@ impl DynamicsFilter {
 
     /// Ends a step, also one whose frame has told nothing of the pose.
     pub(crate) fn end_step(&mut self) {
-        of_any_size!(self, hypotheses => hypotheses.blend_arrivals());
+        of_any_size!(self, hypotheses => hypotheses.end_step());
     }
 
     /// Probabilities of the three kinds of dynamics.

@@ -71,14 +71,22 @@ impl<const N: usize> Hypothesis<N> {
         if self.course.has_more_than_motion() { N } else { 2 * Self::K }
     }
 
+    /// Number of entries that mean the same in others: what a course has alone is not among them.
+    pub(super) fn shared(&self) -> usize {
+        if self.course == Course::ConstantVelocity { 2 * Self::K } else { self.size() }
+    }
+
     /// Rates of the motion, as a linear map.
     pub(super) fn rates(&self, model: MotionModel) -> Matrix2<f64> {
         parts(&centred_generator(model, &self.mean.as_slice()[Self::K..2 * Self::K])).0
     }
 
-    /// How far a push beside the turn takes the centroid over a step, the rates being those half way through it.
+    /// How far a push beside the turn takes the centroid over a step, the rates being those half way through it; nowhere where there is none.
     pub(super) fn pushed_along(&self, step: &Step<'_>) -> Matrix2<f64> {
         let (k, dt) = (Self::K, step.seconds);
+        if !(self.course.has_accelerations() && self.course.turns()) {
+            return Matrix2::zeros();
+        }
         let half_way =
             CentredVector::from_fn(|j, _| if j < k { self.mean[k + j] + 0.5 * dt * self.mean[2 * k + j] } else { 0.0 });
         pushed_along(&parts(&centred_generator(step.model, &half_way.as_slice()[..k])).0, dt)
@@ -134,6 +142,7 @@ impl<const N: usize> Hypothesis<N> {
         let w = parts(&model.generator(&acceleration.as_slice()[..k])).1;
         let of_rates = |of: &CentredVector, seconds: f64| model.linear_flow(&of.as_slice()[..k], seconds);
         let of_motion = || model.linear_flow_with_integral(&motion.as_slice()[..k], dt);
+        let pushed = self.pushed_along(step);
         let (turn, along, shift, later) = match self.course {
             Course::ConstantGenerator | Course::Shaken { .. } => {
                 let (turn, along) = of_motion();
@@ -142,7 +151,7 @@ impl<const N: usize> Hypothesis<N> {
             Course::ChangingGenerator { .. } | Course::SteadyChange { turns: true } => {
                 let half_way = motion + 0.5 * dt * acceleration;
                 let (turn, along) = model.linear_flow_with_integral(&half_way.as_slice()[..k], dt);
-                (turn, along, along * v + self.pushed_along(step) * w, turn * v + along * w)
+                (turn, along, along * v + pushed * w, turn * v + along * w)
             }
             Course::ConstantVelocity => {
                 let (turn, along) = of_motion();
@@ -161,7 +170,7 @@ impl<const N: usize> Hypothesis<N> {
         if self.course.accelerates() && model == MotionModel::Affine {
             carry_turned_chains(&mut self.covariance.data.0, &turn, dt);
         } else {
-            let (transition, size) = (self.transition(step, (&turn, &along, &v, &later)), self.size());
+            let (transition, size) = (self.transition(step, (&turn, &along, &pushed), (&v, &later)), self.size());
             carry(&transition, &mut self.covariance, size);
         }
         for j in 0..rates {
@@ -195,12 +204,13 @@ impl<const N: usize> Hypothesis<N> {
         }
     }
 
-    /// Propagation of errors over a step: `turn` is the linear part of the motion over it and `along` its integral, v is the velocity before
-    /// it, and `later` that after it.
+    /// Propagation of errors over a step: `turn` is the linear part of the motion over it, `along` its integral and `pushed` how far a
+    /// [push takes it](Self::pushed_along), v is the velocity before it, and `later` that after it.
     pub(super) fn transition(
         &self,
         step: &Step<'_>,
-        (turn, along, v, later): (&Matrix2<f64>, &Matrix2<f64>, &Vector2<f64>, &Vector2<f64>),
+        (turn, along, pushed): (&Matrix2<f64>, &Matrix2<f64>, &Matrix2<f64>),
+        (v, later): (&Vector2<f64>, &Vector2<f64>),
     ) -> SMatrix<f64, N, N> {
         let (model, k, dt) = (step.model, Self::K, step.seconds);
         let rates = k - 2;
@@ -240,7 +250,6 @@ impl<const N: usize> Hypothesis<N> {
             }
         }
         if self.course.has_accelerations() && self.course.turns() {
-            let pushed = self.pushed_along(step);
             for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 f[(rates + i, 2 * k + rates + j)] = pushed[(i, j)];
                 f[(k + rates + i, 2 * k + rates + j)] = along[(i, j)];

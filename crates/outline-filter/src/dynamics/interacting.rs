@@ -168,7 +168,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         if is_beyond_linear(self.model, null) {
             return false;
         }
-        self.blend_arrivals();
+        debug_assert!(self.arrivals.is_empty(), "the step before has not ended");
         self.reckon_with_change(seconds);
         let moved = CentredPose { pose: self.reference.pose, centroid: pose.centroid };
         let (model, reference) = (self.model, self.reference);
@@ -214,8 +214,9 @@ impl<const N: usize> InteractingHypotheses<N> {
             .chain(self.steady_change.iter_mut().flat_map(SteadyChange::hypotheses))
     }
 
-    /// Takes those that have changed to each hypothesis to be one with those that have not.
-    pub(crate) fn blend_arrivals(&mut self) {
+    /// Ends a step, also one whose frame has told nothing of the pose: takes those that have changed to each hypothesis to be one with those that
+    /// have not.
+    pub(crate) fn end_step(&mut self) {
         let Self { hypotheses, arrivals, .. } = self;
         arrivals.drain(..).for_each(|arrival| arrival.blend_into(&mut hypotheses[arrival.number]));
     }
@@ -259,7 +260,6 @@ impl<const N: usize> InteractingHypotheses<N> {
             let (logarithm, score) = arrival.update(&measurement, (logarithms[number], standardised[number]));
             (logarithms[number], standardised[number]) = (logarithm, score);
         }
-        self.blend_arrivals();
         if let Some(change) = &mut self.steady_change {
             change.update(&measurement);
         }

@@ -30,7 +30,6 @@ pub(super) fn mix<const N: usize>(
     units: (&CentredVector, f64),
     mut arrivals: Option<&mut Vec<Arrival<N>>>,
 ) {
-    let k = N / 3;
     if hypotheses.len() < 2 {
         return;
     }
@@ -55,14 +54,9 @@ pub(super) fn mix<const N: usize>(
                 arrivals.push(Arrival { number, share, state: of_all.as_state_of(hypothesis, model, units) });
             }
             _ => {
-                let n = hypothesis.size();
-                // What a course has alone is as it was, or nothing is known of it.
-                let shared = if hypothesis.course == Course::ConstantVelocity { 2 * k } else { n };
+                let shared = hypothesis.shared();
                 hypothesis.blend((&of_all.mean, &of_all.covariance), share, shared);
-                if n > 2 * k {
-                    let unknown = if shared < n { 1.0 } else { of_all.without };
-                    hypothesis.add_unknown(model, units, share * unknown);
-                }
+                of_all.add_unknown_to(hypothesis, model, units, share);
             }
         }
     }
@@ -133,16 +127,26 @@ impl<const N: usize> Pooled<N> {
         model: MotionModel,
         units: (&CentredVector, f64),
     ) -> Hypothesis<N> {
-        let course = hypothesis.course;
-        let (n, k) = (if course.has_more_than_motion() { N } else { 2 * N / 3 }, N / 3);
-        let shared = if course == Course::ConstantVelocity { 2 * k } else { n };
+        let (course, shared) = (hypothesis.course, hypothesis.shared());
         let mean = SVector::from_fn(|i, _| if i < shared { self.mean[i] } else { hypothesis.mean[i] });
         let covariance = SMatrix::from_fn(|i, j| if i < shared && j < shared { self.covariance[(i, j)] } else { 0.0 });
-        let mut hypothesis = Hypothesis { course, mean, covariance };
-        if n > 2 * k {
-            hypothesis.add_unknown(model, units, if shared < n { 1.0 } else { self.without });
+        let mut state = Hypothesis { course, mean, covariance };
+        self.add_unknown_to(&mut state, model, units, 1.0);
+        state
+    }
+
+    /// Takes next to nothing to be known, in a share of a hypothesis, of what its course has alone, and of accelerations by those that have none.
+    fn add_unknown_to(
+        &self,
+        hypothesis: &mut Hypothesis<N>,
+        model: MotionModel,
+        units: (&CentredVector, f64),
+        share: f64,
+    ) {
+        if hypothesis.course.has_more_than_motion() {
+            let unknown = if hypothesis.shared() < hypothesis.size() { 1.0 } else { self.without };
+            hypothesis.add_unknown(model, units, share * unknown);
         }
-        hypothesis
     }
 
     /// With accelerations of all parameters.

@@ -105,7 +105,8 @@ mod tests {
             let variance = CentredVector::zeros();
             let step = Step::new((MotionModel::Affine, dt), [&at, &at], &variance).expect("poses");
             let none = Vector2::zeros();
-            let transition = hypothesis.transition(&step, (&turn, &(Matrix2::identity() * dt), &none, &none));
+            let (along, pushed) = (Matrix2::identity() * dt, Matrix2::zeros());
+            let transition = hypothesis.transition(&step, (&turn, &along, &pushed), (&none, &none));
             let expected = carried(&transition, &covariance, 18);
             let mut found = covariance;
             carry_turned_chains(&mut found.data.0, &turn, dt);

@@ -98,10 +98,15 @@ impl MotionFilter {
         let Statement { random, all, .. } = self.statement()?;
         let estimate = track.estimate_of(all, self.turn_told())?.with_random_part(&track.deviations_of(random)?);
         let doubts = self.turn_hypotheses.doubts(&estimate).into_iter().enumerate();
-        let is_stated = self.unstated().is_none() && !self.may_still_change() && !self.contradicts_path();
+        let is_stated = self.is_stated();
         let unknown =
             doubts.take(self.settings.model.parameter_count()).filter(|(_, doubtful)| *doubtful || !is_stated);
         Some(unknown.fold(estimate, |e, (j, _)| e.with_unobservable(j)))
+    }
+
+    /// Whether anything is stated of the motion, be it known well or not.
+    fn is_stated(&self) -> bool {
+        self.unstated().is_none() && !self.may_still_change() && !self.contradicts_path()
     }
 
     /// Whether the motion has been seen to change, or not where it was expected, and is known from one step alone since the object was found again:
@@ -195,8 +200,7 @@ impl MotionFilter {
     /// [ambiguous](Self::ambiguity), or if [`estimate`](Self::estimate) is `None`.
     #[must_use]
     pub fn velocity(&self) -> Option<PointVelocity> {
-        let is_doubtful = self.turn_hypotheses.are_doubtful() || self.contradicts_path();
-        if is_doubtful || self.unstated().is_some() || self.may_still_change() {
+        if self.turn_hypotheses.are_doubtful() || !self.is_stated() {
             return None;
         }
         self.track.as_ref()?.velocity_of_centroid(&self.state()?)
