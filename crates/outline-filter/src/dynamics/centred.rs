@@ -129,6 +129,14 @@ impl Summary {
         Some(Self { covariance: carried(&of_both(&to, k), &centred, 2 * k), ..*self })
     }
 
+    /// How fast an outline of unit radius about the centroid moves, root mean square, as far as it is an affine motion.
+    pub(crate) fn speed(&self, model: MotionModel, centroid: &Point2<f64>) -> f64 {
+        let at = CentredPose { pose: self.pose, centroid: *centroid };
+        let motion = at.about_centroid(model) * SVector::<f64, MAX_PARAMETERS>::from(self.motion);
+        let (rates, velocity) = parts(&centred_generator(model, &motion.as_slice()[..model.parameter_count()]));
+        (0.5 * rates.norm_squared() + velocity.norm_squared()).sqrt()
+    }
+
     /// Motion and covariance about the centroid, by the change of k parameters that leads there. The pose is where errors are counted from.
     pub(super) fn about_centroid<const N: usize>(
         &self,
@@ -252,6 +260,21 @@ mod tests {
             centred_velocity(model).zip(velocity).for_each(|(i, entry)| expected[i] = entry);
             assert!((centred - expected).amax() < 1e-12, "{model:?}: {centred}");
         }
+    }
+
+    #[test]
+    fn an_outline_that_turns_and_travels_is_as_fast_as_its_points_are_root_mean_square() {
+        let (omega, centroid) = (0.7, Point2::new(0.3, -0.1));
+        let motion: ParameterVector = [omega, 0.2, -0.4, 0.0, 0.0, 0.0, 0.0, 0.0].into();
+        let summary = Summary { pose: moved_by(1.0, 2.0), motion, covariance: StateMatrix::zeros() };
+        let centre = map_point(&summary.pose, &centroid);
+        let squares = (0..8).map(|i| {
+            let (sine, cosine) = (f64::from(i) * std::f64::consts::FRAC_PI_4).sin_cos();
+            let (x, y) = (centre.x + cosine, centre.y + sine);
+            (omega * y + 0.2).powi(2) + (-omega * x - 0.4).powi(2)
+        });
+        let expected = (squares.sum::<f64>() / 8.0).sqrt();
+        assert!((summary.speed(MotionModel::Rigid, &centroid) - expected).abs() < 1e-12, "{expected}");
     }
 
     proptest! {

@@ -1,7 +1,7 @@
 //! What is stated of the motion, with how well it is known, or why nothing is.
 use freeform_estimate::{MotionEstimate, MotionState, PointVelocity};
 use freeform_riccati::MAX_PARAMETERS;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, Point2};
 
 use super::{
     motion_filter::{Counts, MotionFilter, Phase},
@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     belief::StateMatrix,
-    dynamics::{CentredDeviations, Purpose, WrongFamily, centred_velocity},
+    dynamics::{CentredDeviations, Dynamics, Purpose, Summary, WrongFamily, centred_velocity},
     track::{Track, TurnOfPose, TurnTold},
     tuning::statement as tuning,
 };
@@ -57,6 +57,10 @@ impl MotionFilter {
         let mut all = random;
         all.covariance += moments;
         let displacement = unmodelled.displacement * track.reference().radius;
+        let ones = CentredDeviations::from_element(1.0);
+        if let Some(change) = self.possible_change(&own, &centroid) {
+            all = all.widened(model, &centroid, &ones, [&none, &CentredDeviations::repeat(change)])?;
+        }
         let edge_uncertainty = self.settings.edge_uncertainty;
         let [pixel, of_side] = track.rounding_of_side();
         if [displacement, edge_uncertainty, pixel].iter().any(|length| *length > 0.0) {
@@ -74,11 +78,20 @@ impl MotionFilter {
                 }
             }
             let [pose, motion] = [pose.zip_map(&of_pose, f64::hypot), motion.zip_map(&of_motion, f64::hypot)];
-            all = all.widened(model, &centroid, &CentredDeviations::from_element(1.0), [&pose, &motion])?;
+            all = all.widened(model, &centroid, &ones, [&pose, &motion])?;
         }
         // Edges may move points by as much, and that is in the deviations already.
         let family = unmodelled.family.filter(|_| unmodelled.is_beyond_doubt && displacement > edge_uncertainty);
         Some(Statement { random, all, family })
+    }
+
+    /// By how much a motion that is known from one step alone, a mean over it, may be off at its end, as a deviation of every parameter about the
+    /// centroid. None where it is said to be constant, or how it changes.
+    fn possible_change(&self, own: &Summary, centroid: &Point2<f64>) -> Option<f64> {
+        let may_change = matches!(self.settings.followed_dynamics(), Some(Dynamics::Auto | Dynamics::Accelerating));
+        let is_of_one_step = self.track.as_ref().is_some_and(Track::is_found_one_step_ago);
+        (may_change && is_of_one_step)
+            .then(|| 0.5 * tuning::CHANGE_IN_FIRST_STEP * own.speed(self.settings.model, centroid))
     }
 
     /// What the outlines do that the motion model does not have, if that is beyond doubt: the model to try is another.
