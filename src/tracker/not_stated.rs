@@ -1,6 +1,7 @@
 use freeform_estimate::ParameterEstimate;
+use freeform_outline_filter::{Ambiguity, PlaneAmbiguity};
 
-use super::{observation::Observation, result::ObjectResult};
+use super::{family::MotionFamily, observation::Observation, result::ObjectResult};
 use crate::Warning;
 
 /// Why a value is not stated.
@@ -50,8 +51,24 @@ impl NotStated {
 }
 
 /// Whether a parameter has a value.
-fn is_stated(found: Option<Vec<ParameterEstimate>>, name: &str) -> bool {
+fn is_stated(found: Option<&[ParameterEstimate]>, name: &str) -> bool {
     found.is_some_and(|found| found.iter().any(|p| p.name == name && p.value.is_some()))
+}
+
+/// Whether turns, or motions of a plane, leave a parameter open.
+fn is_ambiguous(turns: Option<&Ambiguity>, planes: Option<&PlaneAmbiguity>, name: &str) -> bool {
+    turns.is_some_and(|turns| turns.parameters.contains(&name))
+        || planes.is_some_and(|planes| planes.parameters.contains(&name))
+}
+
+/// The parameters of a family that have no value, in order, each with why.
+fn unstated(
+    family: MotionFamily,
+    found: Option<&[ParameterEstimate]>,
+    why: impl Fn(&str) -> NotStated,
+) -> Vec<(&'static str, NotStated)> {
+    let names = family.parameter_names().iter().copied();
+    names.filter(|name| !is_stated(found, name)).map(|name| (name, why(name))).collect()
 }
 
 impl ObjectResult {
@@ -68,20 +85,33 @@ impl ObjectResult {
     pub fn not_stated(&self, name: &str) -> Option<NotStated> {
         let is_stated = match name {
             "normal" => self.plane.as_ref().is_some_and(|plane| plane.normal().is_some()),
-            _ => is_stated(self.parameters(), name),
+            _ => is_stated(self.parameters().as_deref(), name),
         };
-        if is_stated {
-            return None;
-        }
-        let is_ambiguous = self.ambiguity.as_ref().is_some_and(|turns| turns.parameters.contains(&name))
-            || self.plane_ambiguity.as_ref().is_some_and(|planes| planes.parameters.contains(&name));
+        (!is_stated).then(|| self.why_unstated(name))
+    }
+
+    /// The parameters of the motion that are not stated, in order, each with why.
+    ///
+    /// ```
+    /// use freeform_motion::{riccati::MotionModel, tracker::{Method, NotStated, ObjectResult}};
+    ///
+    /// let nothing = ObjectResult::unknown("left", Method::Filter, MotionModel::Rigid);
+    /// assert_eq!(nothing.unstated(), ["omega", "b1", "b2"].map(|name| (name, NotStated::Unknown)));
+    /// ```
+    #[must_use]
+    pub fn unstated(&self) -> Vec<(&'static str, NotStated)> {
+        unstated(self.motion, self.parameters().as_deref(), |name| self.why_unstated(name))
+    }
+
+    /// Of a value that is not stated.
+    fn why_unstated(&self, name: &str) -> NotStated {
         let is_hidden = self.warnings.iter().any(|warning| match warning {
             Warning::NotObservable { parameters }
             | Warning::RotationNotObservable { parameters }
             | Warning::PlaneHardlyMoves { parameters } => parameters.contains(&name),
             _ => false,
         });
-        Some(NotStated::of(is_ambiguous, is_hidden))
+        NotStated::of(is_ambiguous(self.ambiguity.as_ref(), self.plane_ambiguity.as_deref(), name), is_hidden)
     }
 
     /// Why the velocity of the middle is not stated; `None` where it is. Every outline shows it, but among turns that it leaves open it is not known
@@ -96,12 +126,19 @@ impl Observation {
     /// As [`ObjectResult::not_stated`], as known after the frame.
     #[must_use]
     pub fn not_stated(&self, name: &str) -> Option<NotStated> {
-        if is_stated(self.parameters(), name) {
-            return None;
-        }
-        let is_ambiguous = self.ambiguity.as_ref().is_some_and(|turns| turns.parameters.contains(&name))
-            || self.plane_ambiguity.as_ref().is_some_and(|planes| planes.parameters.contains(&name));
-        Some(NotStated::of(is_ambiguous, self.hidden.contains(&name)))
+        (!is_stated(self.parameters().as_deref(), name)).then(|| self.why_unstated(name))
+    }
+
+    /// As [`ObjectResult::unstated`], of a family of motions, as known after the frame.
+    #[must_use]
+    pub fn unstated(&self, family: impl Into<MotionFamily>) -> Vec<(&'static str, NotStated)> {
+        unstated(family.into(), self.parameters().as_deref(), |name| self.why_unstated(name))
+    }
+
+    /// Of a parameter that is not stated.
+    fn why_unstated(&self, name: &str) -> NotStated {
+        let is_hidden = self.hidden.contains(&name);
+        NotStated::of(is_ambiguous(self.ambiguity.as_ref(), self.plane_ambiguity.as_deref(), name), is_hidden)
     }
 
     /// As [`ObjectResult::velocity_not_stated`], as known after the frame.

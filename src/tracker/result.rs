@@ -106,10 +106,8 @@ impl ObjectResult {
 
     fn warned_of_two_frames(mut self) -> Self {
         let is_of_two = self.frames.saturating_sub(self.frames_rejected) <= 2;
-        let names = self.motion.parameter_names();
-        let has_motion = self.estimate.is_some() || self.plane.is_some();
-        let is_stated =
-            (has_motion && names.iter().any(|name| self.not_stated(name).is_none())) || self.velocity.is_some();
+        let count = self.motion.parameter_names().len();
+        let is_stated = self.unstated().len() < count || self.velocity.is_some();
         if is_stated && is_of_two && !self.warnings.contains(&Warning::OfTwoFrames) {
             self.warnings.push(Warning::OfTwoFrames);
             self.warnings.sort_by_key(Warning::order);

@@ -111,9 +111,8 @@ impl<W: Write> TraceWriter<W> {
             velocity_unstated = observation.velocity_not_stated();
         }
         row.push(observation.rejection.as_ref().map_or_else(String::new, ToString::to_string));
-        let names = self.family.parameter_names().iter();
-        let parameters = names.filter_map(|name| Some((*name, observation.not_stated(name)?)));
-        row.push(NotStated::cell(parameters.chain(of_velocity(velocity_unstated))));
+        let parameters = observation.unstated(self.family);
+        row.push(NotStated::cell(parameters.into_iter().chain(of_velocity(velocity_unstated))));
         self.writer.write_record(&row).map_err(io::Error::from)
     }
 

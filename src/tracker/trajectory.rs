@@ -136,8 +136,7 @@ impl TrajectoryRow {
 impl Trajectory {
     /// Adds the observation of a frame.
     pub fn take(&mut self, observation: &Observation) {
-        let parameters = observation.estimate.iter().flat_map(MotionEstimate::parameters);
-        let not_stated = parameters.filter_map(|p| Some((p.name, observation.not_stated(p.name)?)));
+        let motion = observation.estimate.as_ref();
         self.rows.push(TrajectoryRow {
             object: observation.object.clone(),
             frame: observation.frame,
@@ -146,7 +145,7 @@ impl Trajectory {
             segment: observation.segment,
             rejection: observation.rejection.clone(),
             state: observation.state.clone(),
-            not_stated: not_stated.collect(),
+            not_stated: motion.map_or_else(Vec::new, |motion| observation.unstated(motion.model())),
             turn_not_stated: observation.turn_not_stated(),
             velocity_not_stated: observation.velocity_not_stated(),
         });

@@ -138,20 +138,8 @@ impl<R: Read> OutlineReader<R> {
         let frame = self.frame_number()?;
         let time = self.number(Column::Time, self.columns.time)?;
         let object = self.object()?.to_owned();
-        if let Some((previous_frame, previous)) = self.latest.of(&object) {
-            if frame == previous_frame {
-                let kind = ReadErrorKind::SecondOutline { object, frame };
-                return Err(self.rows.error(Some(Column::Frame), kind));
-            }
-            if frame < previous_frame {
-                let kind = ReadErrorKind::FrameNotIncreasing { object, frame, previous: previous_frame };
-                return Err(self.rows.error(Some(Column::Frame), kind));
-            }
-            if time <= previous {
-                let kind = ReadErrorKind::TimeNotIncreasing { object, frame, previous, time };
-                return Err(self.rows.error(Some(Column::Time), kind));
-            }
-        }
+        let checked = self.latest.check(&object, (frame, time));
+        checked.map_err(|(column, kind)| self.rows.error(Some(column), kind))?;
         self.latest.set(&object, (frame, time));
         let capacity = self.present.as_ref().map_or(0, OutlineRows::capacity_hint);
         Ok(self.present.replace(OutlineRows::new(frame, time, object, self.rows.line(), capacity)))
@@ -212,15 +200,8 @@ impl<R: Read> OutlineReader<R> {
     }
 
     fn finish(&self, outline: OutlineRows) -> Result<OutlineFrame, ReadError> {
-        let OutlineRows { frame, time, first_line, last_line, .. } = outline;
-        let (object, outline) = outline.into_outline();
-        match outline {
-            Ok(outline) => Ok(OutlineFrame { frame, time, object, outline }),
-            Err(source) => {
-                let kind = ReadErrorKind::Degenerate { object, frame, source };
-                Err(self.rows.error_at(Some((first_line, last_line)), None, kind))
-            }
-        }
+        let lines = Some((outline.first_line, outline.last_line));
+        outline.into_frame().map_err(|kind| self.rows.error_at(lines, None, kind))
     }
 }
 

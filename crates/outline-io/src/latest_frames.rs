@@ -1,5 +1,8 @@
 use std::collections::HashMap;
 
+use crate::column::Column;
+use crate::error::ReadErrorKind;
+
 /// Names kept at least, those of the latest outlines.
 const KEPT: usize = 1 << 14;
 
@@ -19,7 +22,32 @@ struct Latest {
     outline: u64,
 }
 
+/// Refuses an outline whose frame or time, given as a pair, does not come after those of the outline before of its object; tells in which column.
+pub(crate) fn check_order(
+    object: &str,
+    (frame, time): (u64, f64),
+    (previous_frame, previous): (u64, f64),
+) -> Result<(), (Column, ReadErrorKind)> {
+    let object = || object.to_owned();
+    if frame == previous_frame {
+        return Err((Column::Frame, ReadErrorKind::SecondOutline { object: object(), frame }));
+    }
+    if frame < previous_frame {
+        let kind = ReadErrorKind::FrameNotIncreasing { object: object(), frame, previous: previous_frame };
+        return Err((Column::Frame, kind));
+    }
+    if time <= previous {
+        return Err((Column::Time, ReadErrorKind::TimeNotIncreasing { object: object(), frame, previous, time }));
+    }
+    Ok(())
+}
+
 impl LatestFrames {
+    /// As [`check_order`], after the latest outline of the object.
+    pub(crate) fn check(&self, object: &str, outline: (u64, f64)) -> Result<(), (Column, ReadErrorKind)> {
+        self.of(object).map_or(Ok(()), |latest| check_order(object, outline, latest))
+    }
+
     /// Frame number and time of the latest outline of an object.
     pub(crate) fn of(&self, object: &str) -> Option<(u64, f64)> {
         self.latest.get(object).map(|latest| (latest.frame, latest.time))

@@ -6,6 +6,7 @@ use nalgebra::Point2;
 use crate::column::Column;
 use crate::csv_field::quoted_start;
 use crate::error::ReadErrorKind;
+use crate::frame::OutlineFrame;
 
 /// Largest number of points of one outline; a file that never changes its frame number must not fill the memory.
 const POINT_LIMIT: usize = 1 << 22;
@@ -130,6 +131,15 @@ impl OutlineRows {
             return (self.object, Err(OutlineError::DeviationCount { found, points }));
         }
         (self.object, outline((self.pieces, self.deviations)))
+    }
+
+    /// The frame with the outline of the points, or why they are none.
+    pub(crate) fn into_frame(self) -> Result<OutlineFrame, ReadErrorKind> {
+        let (frame, time) = (self.frame, self.time);
+        match self.into_outline() {
+            (object, Ok(outline)) => Ok(OutlineFrame { frame, time, object, outline }),
+            (object, Err(source)) => Err(ReadErrorKind::Degenerate { object, frame, source }),
+        }
     }
 }
 

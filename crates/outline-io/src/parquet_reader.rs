@@ -243,19 +243,8 @@ impl ParquetReader {
     fn begin(&mut self, row: usize) -> Result<Option<OutlineRows>, ReadError> {
         let (frame, time) = (self.batch.frame[row], self.batch.time[row]);
         let object = self.batch.object[row].to_string();
-        if let Some((previous_frame, previous)) = self.latest.of(&object) {
-            if frame == previous_frame {
-                return Err(self.error(row, Some(Column::Frame), ReadErrorKind::SecondOutline { object, frame }));
-            }
-            if frame < previous_frame {
-                let kind = ReadErrorKind::FrameNotIncreasing { object, frame, previous: previous_frame };
-                return Err(self.error(row, Some(Column::Frame), kind));
-            }
-            if time <= previous {
-                let kind = ReadErrorKind::TimeNotIncreasing { object, frame, previous, time };
-                return Err(self.error(row, Some(Column::Time), kind));
-            }
-        }
+        let checked = self.latest.check(&object, (frame, time));
+        checked.map_err(|(column, kind)| self.error(row, Some(column), kind))?;
         self.unpacked.add_outline().map_err(|kind| self.error(row, None, kind))?;
         self.latest.set(&object, (frame, time));
         let number = self.number(row);
@@ -309,18 +298,10 @@ impl ParquetReader {
     }
 
     fn finish(&self, outline: OutlineRows) -> Result<OutlineFrame, ReadError> {
-        let OutlineRows { frame, time, first_line, last_line, .. } = outline;
-        let (object, outline) = outline.into_outline();
-        outline.map(|outline| OutlineFrame { frame, time, object: object.clone(), outline }).map_err(|source| {
-            ReadError {
-                place: Place {
-                    file: self.table.file.clone(),
-                    span: Some(Span::Rows(first_line.min(last_line), last_line.max(first_line))),
-                    column: None,
-                },
-                kind: ReadErrorKind::Degenerate { object, frame, source },
-            }
-        })
+        let OutlineRows { first_line, last_line, .. } = outline;
+        let span = Some(Span::Rows(first_line.min(last_line), last_line.max(first_line)));
+        let place = || Place { file: self.table.file.clone(), span, column: None };
+        outline.into_frame().map_err(|kind| ReadError { place: place(), kind })
     }
 }
 

@@ -13,7 +13,7 @@ use crate::{
     picture::read_picture_channels,
     picture_error::PictureError,
     picture_files::picture_files,
-    picture_outlines::{PictureOutlines, PictureSettings},
+    picture_outlines::{PictureOutlines, PictureSettings, TracedFrame},
     picture_sequence::{PictureFrame, PictureSequence, SequenceSettings},
     trace::is_two_valued,
     whole_pixels,
@@ -175,19 +175,25 @@ impl PicturePreview {
         }
         let traced = |count: usize, selection: Selection| {
             let pictures = pictures.iter().take(count).cloned().map(Ok);
-            Some(PictureOutlines::new(pictures, PictureSettings { selection, ..settings.clone() }).ok()?.flatten())
+            let traced = PictureOutlines::new(pictures, PictureSettings { selection, ..settings.clone() }).ok()?;
+            Some(traced.flatten().collect::<Vec<TracedFrame>>())
         };
         let selection = match settings.selection {
             Selection::Largest | Selection::Nearest => Selection::Largest,
             Selection::All | Selection::Moving => Selection::All,
         };
         // What is drawn on whole pixels is off as masks are.
-        if whole_pixels::are_drawn_on(traced(STEPS_LOOKED_AT, selection)?, &settings.trace) {
+        let objects = traced(STEPS_LOOKED_AT, selection)?;
+        if whole_pixels::are_drawn_on(&objects, &settings.trace) {
             return Some(OutlineUncertainty::MaskPixel(settings.trace.pixel()));
         }
-        let largest =
-            traced(EDGES_LOOKED_AT, Selection::Largest)?.flat_map(|traced| traced.objects.unwrap_or_default());
-        let mut lengths: Vec<f64> = largest.filter_map(|(_, traced)| Some(traced.edges?.systematic)).collect();
+        let largest = match selection {
+            Selection::Largest => objects,
+            _ => traced(EDGES_LOOKED_AT, Selection::Largest)?,
+        };
+        let outlines = largest.iter().take(EDGES_LOOKED_AT).flat_map(|traced| traced.objects.iter().flatten());
+        let mut lengths: Vec<f64> =
+            outlines.filter_map(|(_, traced)| Some(traced.edges.as_ref()?.systematic)).collect();
         lengths.sort_by(f64::total_cmp);
         lengths.get(lengths.len() / 2).copied().map(OutlineUncertainty::Edges)
     }

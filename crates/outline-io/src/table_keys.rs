@@ -5,6 +5,7 @@ use crate::column::Column;
 use crate::csv_field::{NUMBER_LIMIT, positive};
 use crate::error::{Place, ReadError, ReadErrorKind, Span};
 use crate::frame::{DEFAULT_OBJECT, OutlineFrame};
+use crate::latest_frames::check_order;
 use crate::outline_rows::OutlineRows;
 
 /// Name of a table in messages.
@@ -135,20 +136,8 @@ impl LatestOutlines {
     pub(crate) fn check(&self, keys: &TableKeys<'_>, row: usize) -> Result<(), ReadError> {
         let (frame, time) = (keys.frame[row], keys.time[row]);
         check_number(time, Column::Time, row)?;
-        let Some((previous_frame, previous)) = self.0[keys.object(row)] else { return Ok(()) };
-        let object = || keys.name(row).to_owned();
-        if frame == previous_frame {
-            return Err(at(Some(Column::Frame), row, ReadErrorKind::SecondOutline { object: object(), frame }));
-        }
-        if frame < previous_frame {
-            let kind = ReadErrorKind::FrameNotIncreasing { object: object(), frame, previous: previous_frame };
-            return Err(at(Some(Column::Frame), row, kind));
-        }
-        if time <= previous {
-            let kind = ReadErrorKind::TimeNotIncreasing { object: object(), frame, previous, time };
-            return Err(at(Some(Column::Time), row, kind));
-        }
-        Ok(())
+        let Some(latest) = self.0[keys.object(row)] else { return Ok(()) };
+        check_order(keys.name(row), (frame, time), latest).map_err(|(column, kind)| at(Some(column), row, kind))
     }
 
     pub(crate) fn set(&mut self, keys: &TableKeys<'_>, row: usize) {

@@ -24,7 +24,7 @@ const MOVES: f64 = 0.5;
 const SAME_AREA: f64 = 0.05;
 
 /// Whether most of the edges of these pictures lie between pixels, or what moves in them moves by whole pixels, and not always by as many.
-pub(crate) fn are_drawn_on(pictures: impl Iterator<Item = TracedFrame>, trace: &TraceSettings) -> bool {
+pub(crate) fn are_drawn_on(pictures: &[TracedFrame], trace: &TraceSettings) -> bool {
     let pixel = trace.pixel_grid(0).pixel_size();
     let (mut edges, mut on_pixels) = (0_usize, 0_usize);
     let (mut steps, mut whole) = (0_usize, 0_usize);
@@ -32,16 +32,16 @@ pub(crate) fn are_drawn_on(pictures: impl Iterator<Item = TracedFrame>, trace: &
     let (mut first_steps, mut differ) = (HashMap::<u64, Vector2<f64>>::new(), false);
     for TracedFrame { objects, .. } in pictures {
         let mut seen = HashMap::new();
-        for (name, TracedOutline { edges: fit, centre, area, touches_border, .. }) in objects.unwrap_or_default() {
-            if let Some(fit) = &fit {
+        for (name, TracedOutline { edges: fit, centre, area, touches_border, .. }) in objects.iter().flatten() {
+            if let Some(fit) = fit {
                 edges += 1;
                 on_pixels += usize::from(fit.is_on_pixels());
             }
-            if touches_border {
+            if *touches_border {
                 continue;
             }
-            seen.insert(name, (centre, area));
-            let Some((from, area_before)) = before.get(&name) else { continue };
+            seen.insert(*name, (*centre, *area));
+            let Some((from, area_before)) = before.get(name) else { continue };
             let step = (centre - from).component_div(&pixel);
             if step.amax() > MOVES && (area / area_before - 1.0).abs() < SAME_AREA {
                 steps += 1;
@@ -49,7 +49,7 @@ pub(crate) fn are_drawn_on(pictures: impl Iterator<Item = TracedFrame>, trace: &
                 if (step - pixels).amax() < WHOLE_STEP {
                     whole += 1;
                     // What turns back goes on at its speed.
-                    differ |= *first_steps.entry(name).or_insert(pixels.abs()) != pixels.abs();
+                    differ |= *first_steps.entry(*name).or_insert(pixels.abs()) != pixels.abs();
                 }
             }
         }
@@ -86,7 +86,8 @@ mod tests {
         });
         let settings = PictureSettings { selection: Selection::All, ..PictureSettings::default() };
         let trace = settings.trace;
-        are_drawn_on(PictureOutlines::new(frames, settings).expect("settings").flatten(), &trace)
+        let traced: Vec<TracedFrame> = PictureOutlines::new(frames, settings).expect("settings").flatten().collect();
+        are_drawn_on(&traced, &trace)
     }
 
     #[test]

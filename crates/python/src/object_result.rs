@@ -60,9 +60,9 @@ struct Reasons {
 
 impl Reasons {
     fn of(result: &ObjectResult) -> Self {
-        let reason = |name: &&str| Some(((*name).to_owned(), result.not_stated(name)?.name().to_owned()));
+        let unstated = result.unstated().into_iter();
         Self {
-            of_parameters: result.motion.parameter_names().iter().filter_map(reason).collect(),
+            of_parameters: unstated.map(|(name, reason)| (name.to_owned(), reason.name().to_owned())).collect(),
             of_velocity: result.velocity_not_stated().map(|reason| reason.name().to_owned()),
         }
     }

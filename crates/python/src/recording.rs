@@ -7,7 +7,7 @@ use freeform_motion::estimate::{MotionEstimate, PointVelocity};
 use freeform_motion::outline_io::{OutlineFrame, ReadError, ReadErrorKind, Span};
 use freeform_motion::riccati::MotionModel;
 use freeform_motion::tracker::{
-    Followed, Method, NotStated, Observation, ReadAhead, Recorded, Trajectory, VELOCITY_NAMES,
+    Followed, Method, NotStated, Observation, ReadAhead, Recorded, Tracker, Trajectory, VELOCITY_NAMES,
 };
 use numpy::{IntoPyArray as _, PyArray1};
 use pyo3::exceptions::{PyUserWarning, PyValueError};
@@ -65,14 +65,14 @@ pub(crate) fn track_table<'py>(
     smooth: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let mut recording = Recording::default();
+    let mut recording = Recording::new(&tracker.lock());
     follow(py, tracker, table.outlines()?, progress.as_ref(), |observation| recording.take(observation))?;
     recording.columns(py, tracker, smooth)
 }
 
 /// What became of the frames that a tracker was given one by one, as columns.
 #[pyclass(frozen, name = "Recorder", module = "freeform_motion")]
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct PyRecorder {
     recording: Mutex<Recording>,
 }
@@ -80,8 +80,8 @@ pub(crate) struct PyRecorder {
 #[pymethods]
 impl PyRecorder {
     #[new]
-    fn new() -> Self {
-        Self::default()
+    fn new(tracker: &PyTracker) -> Self {
+        Self { recording: Mutex::new(Recording::new(&tracker.lock())) }
     }
 
     /// Adds the observation of a frame.
@@ -91,7 +91,8 @@ impl PyRecorder {
 
     /// Columns with one row per observation; afterwards it is empty.
     fn columns<'py>(&self, py: Python<'py>, tracker: &PyTracker, smooth: bool) -> PyResult<Bound<'py, PyDict>> {
-        let recording = std::mem::take(&mut *self.recording.lock().unwrap_or_else(PoisonError::into_inner));
+        let empty = Recording::new(&tracker.lock());
+        let recording = std::mem::replace(&mut *self.recording.lock().unwrap_or_else(PoisonError::into_inner), empty);
         recording.columns(py, tracker, smooth)
     }
 }
@@ -160,22 +161,32 @@ fn table_error(error: &ReadError) -> String {
 }
 
 /// What is kept of every frame.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Recording {
+    method: Method,
+    model: MotionModel,
     trajectory: Trajectory,
     phases: Vec<&'static str>,
-    estimates: Vec<Option<MotionEstimate>>,
-    /// Why parameters of the estimates are not stated, of those that are not.
-    not_stated: Vec<Vec<(&'static str, NotStated)>>,
+    /// Of the adaptive method, which gives no poses: the motions, and which of their parameters are not stated and why.
+    motions: Vec<(Option<MotionEstimate>, String)>,
 }
 
 impl Recording {
+    /// Of what a tracker will observe.
+    fn new(tracker: &Tracker) -> Self {
+        let settings = tracker.settings();
+        // The picture of a plane in space moves by projective maps.
+        let model = settings.motion().model().unwrap_or(MotionModel::Projective);
+        let (trajectory, phases, motions) = (Trajectory::default(), Vec::new(), Vec::new());
+        Self { method: settings.method(), model, trajectory, phases, motions }
+    }
+
     pub(crate) fn take(&mut self, observation: &Observation) {
         self.trajectory.take(observation);
         self.phases.push(observation.phase.map_or("", |phase| phase.name()));
-        self.estimates.push(observation.estimate);
-        let parameters = observation.estimate.iter().flat_map(MotionEstimate::parameters);
-        self.not_stated.push(parameters.filter_map(|p| Some((p.name, observation.not_stated(p.name)?))).collect());
+        if self.method == Method::Adaptive {
+            self.motions.push((observation.estimate, NotStated::cell(observation.unstated(self.model))));
+        }
     }
 
     /// One row per observation, in their order.
@@ -187,8 +198,7 @@ impl Recording {
     ) -> PyResult<Bound<'py, PyDict>> {
         let tracker = tracker.lock();
         let scale = tracker.settings().scale;
-        // The picture of a plane in space moves by projective maps.
-        let model = tracker.settings().motion().model().unwrap_or(MotionModel::Projective);
+        let model = self.model;
         if smooth {
             let not_smoothed: Vec<String> = self.trajectory.smooth(&tracker).iter().map(ToString::to_string).collect();
             if let Some(first) = not_smoothed.first() {
@@ -212,9 +222,8 @@ impl Recording {
         table.set_item("phase", self.phases)?;
         table.set_item("accepted", PyArray1::from_iter(py, rows.iter().map(|row| row.accepted)))?;
         let segments: Vec<i64> = rows.iter().map(|row| row.segment as i64).collect();
-        let mut motions = self.estimates;
-        let (velocities, unstated): (Option<Vec<_>>, Vec<String>);
-        if tracker.settings().method() == Method::Filter {
+        let (motions, velocities, unstated): (Vec<_>, Option<Vec<_>>, Vec<String>);
+        if self.method == Method::Filter {
             let poses = self.trajectory.poses(scale);
             for (index, name) in Trajectory::pose_names(model).iter().enumerate() {
                 let of = |pick: fn(&freeform_motion::estimate::PoseParameter) -> f64| {
@@ -228,8 +237,7 @@ impl Recording {
             velocities = Some(poses.iter().map(|known| known.as_ref()?.velocity).collect());
             motions = poses.into_iter().map(|known| known.map(|known| known.motion)).collect();
         } else {
-            let of_rows = motions.iter().zip(&self.not_stated);
-            unstated = of_rows.map(|(motion, why)| unstated_parameters(model, motion.as_ref(), why)).collect();
+            (motions, unstated) = self.motions.into_iter().unzip();
             velocities = None;
         }
         set_motions(&table, model, &motions)?;
@@ -243,20 +251,6 @@ impl Recording {
         table.set_item("unstated", texts(py, unstated))?;
         Ok(table)
     }
-}
-
-/// The parameters that have no value, each with why: unknown where there is no motion at all.
-fn unstated_parameters(
-    model: MotionModel,
-    motion: Option<&MotionEstimate>,
-    why: &[(&'static str, NotStated)],
-) -> String {
-    let is_stated =
-        |name| motion.is_some_and(|motion| motion.parameters().any(|p| p.name == name && p.value.is_some()));
-    let reason =
-        |name| why.iter().find(|(parameter, _)| *parameter == name).map_or(NotStated::Unknown, |(_, reason)| *reason);
-    let names = model.parameter_names().iter().copied().filter(|name| !is_stated(*name));
-    NotStated::cell(names.map(|name| (name, reason(name))))
 }
 
 /// Texts of which many are the same: each is one object.

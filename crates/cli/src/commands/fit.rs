@@ -7,6 +7,7 @@ use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::tracker::FrameRanges;
 use rayon::prelude::*;
 
+use super::side_by_side;
 use crate::args::{FitArgs, FitFormat};
 use crate::awaited::Waiting;
 use crate::failure::{Failure, warn};
@@ -17,12 +18,6 @@ use crate::output::{
 };
 use crate::progress::{Progress, Verbosity};
 use crate::seen::{Item, Missing};
-
-/// Outlines that are fitted side by side at most.
-pub(super) const OUTLINES_AT_ONCE: usize = 64;
-
-/// Points of these outlines from which on no more are waited for.
-pub(super) const POINTS_AT_ONCE: usize = 1 << 18;
 
 /// Fits a curve to every outline.
 pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
@@ -75,9 +70,7 @@ struct Fitted {
 fn fit_all(args: &FitArgs, input: Input, fitter: Fitter, sink: &mut Sink) -> Result<Fitted, Failure> {
     let progress = Progress::of_frames(input.frame_count(), sink.is_disturbed_by_progress());
     let is_wanted = |frame: u64| args.frame.is_none_or(|wanted| wanted == frame);
-    // A stream may stand still: what has come is not kept waiting.
-    let at_once = if input.is_stream() { 1 } else { OUTLINES_AT_ONCE };
-    let mut waiting = Batch { input: input.name.clone(), fitter, items: Vec::new(), points: 0 };
+    let mut waiting = Batch { input: input.name.clone(), fitter, items: side_by_side::Waiting::of(&input) };
     let mut fitted = Fitted::default();
     for item in input {
         progress.advance();
@@ -99,7 +92,7 @@ fn fit_all(args: &FitArgs, input: Input, fitter: Fitter, sink: &mut Sink) -> Res
                 break;
             }
         }
-        if waiting.items.len() >= at_once || waiting.points >= POINTS_AT_ONCE {
+        if waiting.items.are_enough() {
             fitted.collected.take_all(args, sink, waiting.fit()).map_err(|error| sink.failure(&error))?;
         }
     }
@@ -130,22 +123,18 @@ struct Batch {
     /// Name of the input, for messages.
     input: String,
     fitter: Fitter,
-    items: Vec<Result<OutlineFrame, String>>,
-    /// Points of the outlines.
-    points: usize,
+    items: side_by_side::Waiting<Result<OutlineFrame, String>>,
 }
 
 impl Batch {
     fn add(&mut self, item: Result<OutlineFrame, String>) {
-        self.points += item.as_ref().map_or(0, |frame| frame.outline.point_count());
-        self.items.push(item);
+        let points = item.as_ref().map_or(0, |frame| frame.outline.point_count());
+        self.items.add(item, points);
     }
 
     /// The fits of all that wait, computed on all cores; none waits after that.
     fn fit(&mut self) -> Vec<Result<(FittedOutline, Outline), String>> {
-        self.points = 0;
-        let items = std::mem::take(&mut self.items);
-        let fitted = items.into_par_iter().map_init(
+        let fitted = self.items.take().into_par_iter().map_init(
             || self.fitter.clone(),
             |fitter, item| {
                 let frame = item?;

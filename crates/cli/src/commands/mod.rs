@@ -11,6 +11,7 @@ mod outline;
 mod recognise;
 mod rectify;
 mod reproduce;
+mod side_by_side;
 mod simulate;
 mod simulate_pictures;
 mod stress;

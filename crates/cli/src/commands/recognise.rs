@@ -2,7 +2,7 @@ use freeform_motion::outline_io::{OutlineFrame, read_shape};
 use freeform_motion::recognise::{EvidenceByObject, ObjectEvidence, RecogniseSettings, Recogniser};
 use rayon::prelude::*;
 
-use super::fit::{OUTLINES_AT_ONCE, POINTS_AT_ONCE};
+use super::side_by_side;
 use crate::args::{RecogniseArgs, RecogniseFormat};
 use crate::awaited::Waiting;
 use crate::failure::{Failure, warn};
@@ -58,24 +58,21 @@ struct Compared {
 /// Compares the outlines of an input with the known ones, as many side by side as need not be waited for.
 fn compare_all(input: Input, recogniser: &Recogniser, sink: &Sink) -> Compared {
     let progress = Progress::of_frames(input.frame_count(), sink.is_disturbed_by_progress());
-    // A stream may stand still: what has come is not kept waiting.
-    let at_once = if input.is_stream() { 1 } else { OUTLINES_AT_ONCE };
-    let (mut waiting, mut points) = (Vec::new(), 0);
+    let mut waiting = side_by_side::Waiting::of(&input);
     let mut compared = Compared::default();
     for item in input {
         progress.advance();
         match item {
             Ok(Item::Outline(frame, _)) => {
-                points += frame.outline.point_count();
-                waiting.push(frame);
-                if waiting.len() >= at_once || points >= POINTS_AT_ONCE {
-                    compare(recogniser, &std::mem::take(&mut waiting), &mut compared.objects);
-                    points = 0;
+                let points = frame.outline.point_count();
+                waiting.add(frame, points);
+                if waiting.are_enough() {
+                    compare(recogniser, &waiting.take(), &mut compared.objects);
                 }
             }
             Ok(Item::NoOutline { object, reason, .. }) => {
                 // Objects come in the order in which they are seen.
-                compare(recogniser, &std::mem::take(&mut waiting), &mut compared.objects);
+                compare(recogniser, &waiting.take(), &mut compared.objects);
                 compared.objects.of(&object).reject();
                 compared.reasons.push(reason);
             }
@@ -86,7 +83,7 @@ fn compare_all(input: Input, recogniser: &Recogniser, sink: &Sink) -> Compared {
             }
         }
     }
-    compare(recogniser, &waiting, &mut compared.objects);
+    compare(recogniser, &waiting.take(), &mut compared.objects);
     compared
 }
 

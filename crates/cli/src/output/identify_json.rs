@@ -55,8 +55,7 @@ pub(crate) fn track_line(
         reason: observation.rejection.as_ref().map(ToString::to_string),
         ambiguity: ambiguity_json(observation.ambiguity.as_ref(), observation.plane_ambiguity.as_deref()),
         unstated: Unstated::of(
-            family,
-            |name| observation.not_stated(name),
+            observation.unstated(family),
             observation.velocity_not_stated().filter(|_| family.has_velocity(method)),
         ),
     })
@@ -144,14 +143,13 @@ struct TrackLine<'a> {
 struct Unstated(Vec<(&'static str, NotStated)>);
 
 impl Unstated {
-    fn of(family: MotionFamily, why: impl Fn(&str) -> Option<NotStated>, velocity: Option<NotStated>) -> Self {
-        let parameters = family.parameter_names().iter().filter_map(|name| Some((*name, why(name)?)));
-        Self(parameters.chain(velocity.map(|reason| ("velocity", reason))).collect())
+    fn of(parameters: Vec<(&'static str, NotStated)>, velocity: Option<NotStated>) -> Self {
+        Self(parameters.into_iter().chain(velocity.map(|reason| ("velocity", reason))).collect())
     }
 
     fn of_result(result: &ObjectResult) -> Self {
         let velocity = result.velocity_not_stated().filter(|_| result.has_velocity());
-        Self::of(result.motion, |name| result.not_stated(name), velocity)
+        Self::of(result.unstated(), velocity)
     }
 }
 

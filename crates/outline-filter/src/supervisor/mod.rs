@@ -18,6 +18,7 @@ mod starts;
 mod state_bytes;
 mod stated;
 mod statement;
+mod symmetry_angle;
 mod tracking;
 mod turn_hypotheses;
 mod turn_hypothesis;

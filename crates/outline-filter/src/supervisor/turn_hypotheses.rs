@@ -1,21 +1,17 @@
 //! Hypotheses of the turn: turns that explain the frames as well as the one taken, followed until a frame decides.
-use std::f64::consts::TAU;
-
 use freeform_estimate::MotionEstimate;
 use freeform_riccati::MAX_PARAMETERS;
 
 use super::{
     candidate::Candidate,
     settings::FilterSettings,
+    symmetry_angle::{SymmetryAngle, is_doubtful},
     turn_hypothesis::{Reason, TurnHypothesis, again_if_vouched_for},
 };
 use crate::{
     measurement::{Frame, NegativeLogLikelihood},
     track::{Comparison, Outcome, Track, wrapped},
-    tuning::{
-        symmetry::{OFF_MULTIPLE, SAME},
-        turn_hypotheses as tuning,
-    },
+    tuning::{symmetry::OFF_MULTIPLE, turn_hypotheses as tuning},
 };
 #[cfg(feature = "serde")]
 use freeform_estimate::StateFormat;
@@ -31,8 +27,7 @@ pub(super) struct TurnHypotheses {
     present_turn: f64,
     likelihood: NegativeLogLikelihood,
     frames: usize,
-    /// By which the outline looks the same, rad.
-    symmetry_angle: f64,
+    symmetry_angle: SymmetryAngle,
     /// Time that the turns were made in, in units of the filter.
     acquired_over: f64,
     /// Whether frames at uneven intervals have told turns apart that look the same.
@@ -42,8 +37,8 @@ pub(super) struct TurnHypotheses {
 impl TurnHypotheses {
     /// Of an outline with a symmetry of some order, 1 where there is none, takes the smallest change of all that are not significantly worse than the best.
     pub(super) fn among(mut candidates: Vec<Candidate>, symmetry: usize, seconds: f64) -> (Option<Candidate>, Self) {
-        let symmetry_angle = TAU / symmetry as f64;
-        let different_turn = different_turn(symmetry_angle);
+        let symmetry_angle = SymmetryAngle::of_order(symmetry);
+        let different_turn = symmetry_angle.different_turn();
         candidates.sort_by(|a, b| a.likelihood.squares.total_cmp(&b.likelihood.squares));
         let Some(best) = candidates.first().map(|c| c.likelihood) else { return (None, Self::default()) };
         candidates.retain(|candidate| !candidate.likelihood.is_worse_than(&best));
@@ -65,7 +60,7 @@ impl TurnHypotheses {
             ..Self::default()
         };
         if taken.is_some() {
-            for turn in all.turns_alike() {
+            for turn in symmetry_angle.turns_like(all.present_turn) {
                 all.rival_turns.push(turn);
                 let found =
                     others.as_slice().iter().find(|candidate| wrapped(candidate.turn - turn).abs() < different_turn);
@@ -74,9 +69,8 @@ impl TurnHypotheses {
                 all.rivals.push(TurnHypothesis::new(track, likelihood, Reason::Symmetry));
             }
         }
-        let others: Vec<Candidate> =
-            others.filter(|candidate| !look_the_same(candidate.turn, all.present_turn, symmetry_angle)).collect();
-        for candidate in others {
+        let present_turn = all.present_turn;
+        for candidate in others.filter(|candidate| !symmetry_angle.makes_alike(candidate.turn, present_turn)) {
             all.rival_turns.push(candidate.turn);
             let (likelihood, track) = (candidate.likelihood, Some(candidate.track));
             all.rivals.push(TurnHypothesis::new(track, likelihood, Reason::Likeness));
@@ -84,32 +78,17 @@ impl TurnHypotheses {
         (taken, all)
     }
 
-    /// Turns by the angle of symmetry from the one taken, which look the same.
-    fn turns_alike(&self) -> Vec<f64> {
-        let (present, symmetry_angle) = (self.present_turn, self.symmetry_angle);
-        let mut turns: Vec<f64> = [-1.0, 1.0, -2.0, 2.0].map(|step| present + step * symmetry_angle).into();
-        if symmetry_angle < TAU {
-            let different_turn = different_turn(symmetry_angle);
-            turns.iter_mut().for_each(|turn| *turn = wrapped(*turn));
-            turns.dedup_by(|a, b| (*a - *b).abs() < different_turn);
-            turns.retain(|turn| (turn - present).abs() > different_turn);
-        } else {
-            // A whole turn more or less looks the same; where it is surely the larger one it is not named.
-            turns.retain(|turn| is_doubtful(*turn, present));
-        }
-        turns
-    }
-
     /// Puts a turn in doubt that is more than half of what the outline looks the same by, over so short a time that no frames have told it from one in
     /// the other direction.
     pub(super) fn doubt_more_than_half(&mut self, turn: f64, seconds: f64) {
-        let angle = if self.symmetry_angle > 0.0 { self.symmetry_angle } else { TAU };
+        let symmetry_angle = self.symmetry_angle.or_whole_turn();
+        let angle = symmetry_angle.radians();
         let is_in_doubt = |i: usize| self.rivals[i].reason == Reason::Symmetry && self.is_doubtful(i);
         if turn.abs() <= 0.5 * angle || self.are_told_by_intervals || (0..self.rivals.len()).any(is_in_doubt) {
             return;
         }
         self.count_over(turn, seconds);
-        self.symmetry_angle = angle;
+        self.symmetry_angle = symmetry_angle;
         self.rival_turns.push(turn - angle.copysign(turn));
         self.rivals.push(TurnHypothesis::new(None, NegativeLogLikelihood::default(), Reason::Symmetry));
     }
@@ -121,7 +100,7 @@ impl TurnHypotheses {
             return;
         }
         self.count_over(turn, seconds);
-        self.symmetry_angle = TAU / symmetry as f64;
+        self.symmetry_angle = SymmetryAngle::of_order(symmetry);
         self.name_turns_alike();
     }
 
@@ -143,12 +122,12 @@ impl TurnHypotheses {
         }
         // Some that only looked like the one before look the same as the one taken now: the path does not tell them apart.
         for (hypothesis, turn) in self.rivals.iter_mut().zip(&self.rival_turns) {
-            if look_the_same(*turn, self.present_turn, self.symmetry_angle) {
+            if self.symmetry_angle.makes_alike(*turn, self.present_turn) {
                 hypothesis.reason = Reason::Symmetry;
             }
         }
-        let different_turn = different_turn(self.symmetry_angle);
-        for turn in self.turns_alike() {
+        let different_turn = self.symmetry_angle.different_turn();
+        for turn in self.symmetry_angle.turns_like(self.present_turn) {
             if self.rival_turns.iter().all(|other| (other - turn).abs() > different_turn) {
                 self.rival_turns.push(turn);
                 let likelihood = NegativeLogLikelihood::default();
@@ -182,7 +161,7 @@ impl TurnHypotheses {
 
     /// Whether the smaller turn cannot be taken for granted against one that leads to another pose: a whole turn more or less does not.
     pub(super) fn make_pose_doubtful(&self) -> bool {
-        let least = different_turn(self.symmetry_angle);
+        let least = self.symmetry_angle.different_turn();
         let differs = |i: usize| wrapped(self.rival_turns[i] - self.present_turn).abs() > least;
         (0..self.rivals.len()).any(|i| self.is_doubtful(i) && differs(i))
     }
@@ -247,7 +226,7 @@ impl TurnHypotheses {
             let is_alike = rival.reason == Reason::Likeness;
             // Searches that began apart may find the same motion in the end.
             let are_compared = is_alike && outcome.is_accepted() && found.is_accepted();
-            let have_met = are_compared && rival.has_met(track, different_turn(self.symmetry_angle));
+            let have_met = are_compared && rival.has_met(track, self.symmetry_angle.different_turn());
             if found.is_accepted() && !self.likelihood.is_worse_than(&of_rival) {
                 outcome = again_if_vouched_for(track, settings, frame, outcome);
             }
@@ -299,7 +278,7 @@ impl TurnHypotheses {
 
     /// After frames that tell turns apart which had looked the same: an outline with a mark that was hidden, or smaller than what one frame shows.
     fn deny_symmetry(&mut self) {
-        self.symmetry_angle = TAU;
+        self.symmetry_angle = SymmetryAngle::WHOLE_TURN;
         // Their paths have not counted so far.
         self.likelihood = self.likelihood.of_points();
         for hypothesis in self.rivals.iter_mut().filter(|hypothesis| hypothesis.track.is_some()) {
@@ -334,7 +313,7 @@ impl TurnHypotheses {
         for index in (0..self.rivals.len()).rev() {
             if self.rivals[index].reason == Reason::Symmetry {
                 let apart = (self.rival_turns[index] - self.present_turn) * seconds
-                    / (self.acquired_over * self.symmetry_angle);
+                    / (self.acquired_over * self.symmetry_angle.radians());
                 if (apart - apart.round()).abs() > OFF_MULTIPLE {
                     self.are_told_by_intervals = true;
                     self.remove(index);
@@ -368,22 +347,6 @@ impl TurnHypotheses {
     }
 }
 
-/// Turns this far apart are different, with an angle of symmetry.
-fn different_turn(symmetry_angle: f64) -> f64 {
-    tuning::DIFFERENT_TURN.min(SAME * symmetry_angle)
-}
-
-/// Whether turns differ by a multiple of the angle of a symmetry, so that they look the same.
-fn look_the_same(turn: f64, other: f64, symmetry_angle: f64) -> bool {
-    let steps = (turn - other) / symmetry_angle;
-    symmetry_angle < TAU && (steps - steps.round()).abs() <= SAME
-}
-
-/// Whether a turn cannot be taken for granted against another.
-fn is_doubtful(other: f64, present: f64) -> bool {
-    other.abs() < tuning::SURELY_SMALLER * present.abs()
-}
-
 #[cfg(feature = "serde")]
 impl TurnHypotheses {
     /// Whether turns belong to hypotheses, and all numbers can be worked with; `restore` makes their tracks usable, or tells that it cannot.
@@ -395,7 +358,7 @@ impl TurnHypotheses {
             && self.rivals.iter().all(|hypothesis| hypothesis.likelihood.is_valid())
             && self.frames < StateFormat::MOST_COUNTED
             && (self.rivals.is_empty()
-                || [self.symmetry_angle, self.acquired_over].iter().all(|n| n.is_finite() && *n > 0.0));
+                || [self.symmetry_angle.radians(), self.acquired_over].iter().all(|n| n.is_finite() && *n > 0.0));
         is_valid && self.rivals.iter_mut().filter_map(|hypothesis| hypothesis.track.as_mut()).all(restore)
     }
 }

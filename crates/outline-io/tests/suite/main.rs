@@ -5,6 +5,7 @@ mod cmyk;
 mod columns;
 mod contours;
 mod csv_bad_input;
+mod csv_bad_sources;
 mod csv_cut_anywhere;
 mod csv_round_trip;
 mod edge_profiles;

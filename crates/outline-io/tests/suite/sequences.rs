@@ -222,7 +222,8 @@ fn an_object_told_by_a_ring_is_traced_along_the_outer_edge_of_the_ring() {
         // Half of the strength of a Gaussian line of width 1.5, blurred by 1, is 2.1 pixels from its middle.
         assert!((mean - 32.1).abs() < 0.6 && worst < 1.5, "strength {strength}: {mean}, {worst}");
     }
-    let inverted = GrayImage::from_fn(160, 120, |x, y| Luma([255 - ringed(0.0, 50.0).get_pixel(x, y).0[0]]));
+    let dark = ringed(0.0, 50.0);
+    let inverted = GrayImage::from_fn(160, 120, |x, y| Luma([255 - dark.get_pixel(x, y).0[0]]));
     assert!(matches!(trace_mask(&GrayImage::new(160, 120), &dark_ring()), Err(TraceError::NoRing)));
     let light = Ring { contrast: Contrast::LightOnDark, width: Some(6.0) };
     let light = TraceSettings { ring: Some(light), ..TraceSettings::default() };

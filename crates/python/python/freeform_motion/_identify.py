@@ -199,7 +199,7 @@ def track(
         with progress_bar(progress, None) as advance:
             found = track_table(tracker, native_table(data, columns, fps), smooth, advance)
     else:
-        recorder = Recorder()
+        recorder = Recorder(tracker)
         for observation in _follow(tracker, data, fps, times, tracer, progress):
             recorder.take(observation)
         found = recorder.columns(tracker, smooth)

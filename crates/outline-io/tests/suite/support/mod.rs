@@ -1,4 +1,6 @@
-//! Pictures and sequences that the tests go through.
+//! Pictures, sequences and texts that the tests go through.
+pub(crate) mod csv;
+
 use freeform_outline_io::{GrayImage, PictureError, PictureFrame, PictureOutlines, PictureSettings, TracedFrame};
 use image::{DynamicImage, ImageFormat};
 

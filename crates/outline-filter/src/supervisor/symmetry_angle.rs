@@ -1,0 +1,62 @@
+//! The angle by which an outline looks the same, and which turns it leaves open.
+use std::f64::consts::TAU;
+
+use crate::{
+    track::wrapped,
+    tuning::{symmetry::SAME, turn_hypotheses as tuning},
+};
+
+/// The angle by which an outline looks the same, rad: a whole turn where it has no symmetry, 0 before it is known.
+#[derive(Debug, Clone, Copy, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct SymmetryAngle(f64);
+
+impl SymmetryAngle {
+    /// Of an outline without a symmetry.
+    pub(super) const WHOLE_TURN: Self = Self(TAU);
+
+    /// Of an outline with a symmetry of some order, 1 where there is none.
+    pub(super) fn of_order(order: usize) -> Self {
+        Self(TAU / order as f64)
+    }
+
+    pub(super) fn radians(self) -> f64 {
+        self.0
+    }
+
+    /// Itself, or a whole turn before it is known.
+    pub(super) fn or_whole_turn(self) -> Self {
+        if self.0 > 0.0 { self } else { Self::WHOLE_TURN }
+    }
+
+    /// Turns farther apart than this are different, rad.
+    pub(super) fn different_turn(self) -> f64 {
+        tuning::DIFFERENT_TURN.min(SAME * self.0)
+    }
+
+    /// Whether turns differ by a multiple of the angle of a symmetry, so that they look the same.
+    pub(super) fn makes_alike(self, turn: f64, other: f64) -> bool {
+        let steps = (turn - other) / self.0;
+        self.0 < TAU && (steps - steps.round()).abs() <= SAME
+    }
+
+    /// Turns next to a present one that look the same.
+    pub(super) fn turns_like(self, present: f64) -> Vec<f64> {
+        let mut turns: Vec<f64> = [-1.0, 1.0, -2.0, 2.0].map(|step| present + step * self.0).into();
+        if self.0 < TAU {
+            let different_turn = self.different_turn();
+            turns.iter_mut().for_each(|turn| *turn = wrapped(*turn));
+            turns.dedup_by(|a, b| (*a - *b).abs() < different_turn);
+            turns.retain(|turn| (turn - present).abs() > different_turn);
+        } else {
+            // A whole turn more or less looks the same; where it is surely the larger one it is not named.
+            turns.retain(|turn| is_doubtful(*turn, present));
+        }
+        turns
+    }
+}
+
+/// Whether a turn cannot be taken for granted against another.
+pub(super) fn is_doubtful(other: f64, present: f64) -> bool {
+    other.abs() < tuning::SURELY_SMALLER * present.abs()
+}
