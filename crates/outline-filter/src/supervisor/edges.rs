@@ -23,7 +23,13 @@ impl MotionFilter {
     pub(super) fn begin_without_edge(&mut self, time: f64, left: &Outline) -> bool {
         let holds_edge =
             self.track.as_ref().is_none_or(|track| self.edges.end(track.outline_points(), &left.centroid()));
-        let is_begun = holds_edge && self.start(time, left).is_ok();
+        holds_edge && self.begin_with(time, left)
+    }
+
+    /// Begins anew with what is left of a frame beside an edge; whether enough is. A map that the edge was not taken for a side of, and which does not
+    /// explain that either, was led astray by the edge.
+    pub(super) fn begin_with(&mut self, time: f64, left: &Outline) -> bool {
+        let is_begun = self.start(time, left).is_ok();
         if is_begun {
             self.before_repeated = None;
             self.counts.begun_without_edge += 1;

@@ -212,6 +212,9 @@ impl MotionFilter {
         }
         self.go_back_before_repeated();
         let (measurement, rejection) = self.process(time, left);
+        if shows_edge && rejection.is_some() {
+            self.begin_with(time, left);
+        }
         Ok(FilterStep { time: seconds, phase: self.phase, measurement, rejection })
     }
 

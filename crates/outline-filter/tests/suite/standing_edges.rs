@@ -16,6 +16,9 @@ const POINTS: usize = 240;
 /// A closed curve about the origin.
 type Body = fn(f64) -> Point2<f64>;
 
+/// Poses over time, s.
+type Motion = fn(f64) -> Isometry2<f64>;
+
 /// A body without symmetry and without straight sides.
 fn pebble(angle: f64) -> Point2<f64> {
     let radius = 0.5 + 0.06 * (2.0 * angle + 0.4).cos() + 0.04 * (3.0 * angle).sin();
@@ -182,7 +185,7 @@ fn straight_sides_of_the_object_itself_are_no_edges_however_it_moves() {
         ("square with a notch", square_with_notch),
         ("pebble", pebble),
     ];
-    let motions: [(&str, fn(f64) -> Isometry2<f64>); 6] = [
+    let motions: [(&str, Motion); 6] = [
         ("rest", |_| Isometry2::identity()),
         ("slide along a side", |t| Isometry2::new(Vector2::new(0.4 * t, 0.0), 0.0)),
         ("to and fro along a side", |t| Isometry2::new(Vector2::new(0.3 * (3.0 * t).sin(), 0.0), 0.0)),
