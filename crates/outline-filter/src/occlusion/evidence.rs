@@ -7,8 +7,8 @@ use super::{
     registration::{Moved, registered},
 };
 use crate::tuning::occlusion::{
-    AGREES, FEWEST_STRAIGHT, GAIN_OF_PART, LEAST_GAIN, MOST_SCATTER, MOST_TRIED, MOVED_SHARE, OFF, PART_DISAGREES,
-    REST_AGREES, SHORTEST_SHARE,
+    AGREES, FEWEST_STRAIGHT, FITS_OF_LINE, GAIN_OF_PART, LEAST_GAIN, MOST_OF_LINE, MOST_SCATTER, MOST_TRIED,
+    MOVED_SHARE, OFF, PART_DISAGREES, REST_AGREES, SHORTEST_SHARE,
 };
 
 /// A straight part of a contour that has stayed where it was in an earlier frame.
@@ -53,8 +53,12 @@ impl<'a> Pair<'a> {
         moved as f64 >= MOVED_SHARE * self.now.len() as f64
     }
 
-    /// The longest straight parts that have stayed.
+    /// The longest straight parts that have stayed. None where what has moved is one straight line: that may be an edge which moves in front of an object
+    /// at rest, as well as a side of an object that comes out from behind an edge at rest.
     pub(super) fn straight_parts(&self) -> Vec<Stayed> {
+        if self.moved_is_straight() {
+            return Vec::new();
+        }
         let fewest = FEWEST_STRAIGHT.max((SHORTEST_SHARE * self.now.len() as f64) as usize);
         let straight = |run: Vec<usize>| {
             let points: Vec<_> = run.iter().map(|i| self.now.point(*i)).collect();
@@ -65,6 +69,21 @@ impl<'a> Pair<'a> {
         parts.sort_by_key(|part| std::cmp::Reverse(part.places.len()));
         parts.truncate(MOST_TRIED);
         parts
+    }
+
+    /// Whether the places that have not stayed lie on one line, but for a few at its ends.
+    fn moved_is_straight(&self) -> bool {
+        let mut moved: Vec<_> =
+            (0..self.now.len()).filter(|i| !self.has_stayed(*i)).map(|i| self.now.point(i)).collect();
+        let most = (MOST_OF_LINE * moved.len() as f64) as usize;
+        for _ in 0..FITS_OF_LINE {
+            let Some((line, _)) = Line::through(moved.iter().take(most).copied()) else { return false };
+            moved.sort_unstable_by(|a, b| line.distance(a).abs().total_cmp(&line.distance(b).abs()));
+            if most > 0 && line.distance(&moved[most - 1]).abs() < AGREES * self.noise {
+                return true;
+            }
+        }
+        false
     }
 
     /// Runs of neighbouring places that have stayed; one between two that have is of them. None where all have.

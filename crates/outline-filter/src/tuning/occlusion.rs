@@ -32,6 +32,10 @@ pub(crate) const STRAIGHT: f64 = 1.5;
 pub(crate) const WITHIN: f64 = 3.0;
 /// Most parts of one contour that are tried, the longest first: a body between two edges has two.
 pub(crate) const MOST_TRIED: usize = 2;
+/// Share of the places that have moved which make them one straight line: the others lie round its ends.
+pub(crate) const MOST_OF_LINE: f64 = 0.8;
+/// Fits of that line, each to the places nearest to the one before.
+pub(crate) const FITS_OF_LINE: usize = 4;
 /// Share of the rest that one rigid motion must explain: what it leaves is next to the edge, where the object comes and goes.
 pub(crate) const REST_AGREES: f64 = 0.9;
 /// Noise at which the rest is registered, over that of the contour, beyond which the object does not move rigidly.

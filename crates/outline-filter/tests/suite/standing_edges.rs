@@ -44,6 +44,15 @@ fn square_with_notch(angle: f64) -> Point2<f64> {
     if p.x > 0.5 && p.y.abs() < 0.1 { Point2::new(p.x - 0.15, p.y) } else { p }
 }
 
+/// A triangle.
+fn triangle(angle: f64) -> Point2<f64> {
+    let corner = |i: f64| {
+        Point2::new(0.6 * (std::f64::consts::TAU * i / 3.0).cos(), 0.5 * (std::f64::consts::TAU * i / 3.0).sin())
+    };
+    let at = 3.0 * angle / std::f64::consts::TAU;
+    corner(at.floor()) + (corner(at.floor() + 1.0) - corner(at.floor())) * at.fract()
+}
+
 /// A half plane that hides what lies in it: points whose coordinate along the normal is above the offset in a frame.
 #[derive(Clone, Copy)]
 struct Hidden {
@@ -202,6 +211,14 @@ fn straight_sides_of_the_object_itself_are_no_edges_however_it_moves() {
             assert_eq!(run.standing_edges().len(), 0, "{name}, {motion}: {:?}", run.standing_edges().next());
         }
     }
+}
+
+#[test]
+fn where_one_straight_line_moves_and_the_rest_stays_nothing_says_which_of_them_is_the_object() {
+    // In front of a triangle at rest: its sides are none of what moves.
+    let hidden = Hidden { normal: -Vector2::x(), offset: 0.25, drift: -0.004 };
+    let run = followed(triangle, |_| Isometry2::identity(), Some(hidden), (80, 6));
+    assert_eq!(run.standing_edges().len(), 0, "{:?}", run.standing_edges().next());
 }
 
 #[test]
