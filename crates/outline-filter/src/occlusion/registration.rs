@@ -4,8 +4,10 @@ use nalgebra::{Matrix3, Point2, Rotation2, Vector2, Vector3};
 use super::places::{Places, median};
 use crate::tuning::{measurement::MEDIAN_TO_DEVIATION, occlusion::AGREES, registration::TUKEY};
 
-/// Least-squares steps of one registration: they halve what is left, and more.
+/// Most least-squares steps of one registration: they halve what is left, and more.
 const STEPS: usize = 12;
+/// A step by less than this share of the noise is the last.
+const SETTLED: f64 = 0.03;
 /// Fewest places that tell a rigid motion.
 const FEWEST: usize = 6;
 
@@ -92,6 +94,9 @@ pub(super) fn registered(
         let step = information.cholesky()?.solve(&right);
         moved.shift += step.xy();
         moved.turn += step.z / size;
+        if step.norm() < SETTLED * scale {
+            break;
+        }
     }
     let places: Vec<_> = contour.iter().map(|p| place(&moved, &p)).collect();
     let distances = places.iter().map(|p| other.nearest(p).distance).collect();

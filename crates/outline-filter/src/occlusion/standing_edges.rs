@@ -12,8 +12,8 @@ use super::{
 };
 use crate::tuning::map::FEWEST_POINTS;
 use crate::tuning::occlusion::{
-    AGREES, ATTENTIVE, FARTHEST, FRAMES_PER_LOOK, FURTHER, LONGEST_PAIR, LONGEST_PAUSE, LONGEST_WAIT, MOST_EDGES,
-    MOST_KEPT, MOVED, NOISES, PAIRS,
+    AGREES, ATTENTIVE, FARTHEST, FRAMES_PER_LOOK, FURTHER, LONGEST_PAIR, LONGEST_PAUSE, LONGEST_WAIT, LOOKS_PER_PART,
+    MOST_EDGES, MOST_KEPT, MOVED, NOISES, PAIRS,
 };
 
 /// A straight edge that cuts the object off in the picture and is not of it.
@@ -68,7 +68,7 @@ struct Key {
     frame: usize,
     /// By how far a contour had moved when it was compared last.
     compared_at: f64,
-    /// Contours looked at beside it.
+    /// Work done on pairs with it, in looks.
     looks: usize,
 }
 
@@ -126,6 +126,9 @@ impl StandingEdges {
         self.next_look = self.frame + 1;
         let parts = pair.straight_parts();
         let is_done = parts.is_empty() || displacement > FARTHEST * places.size();
+        let work = LOOKS_PER_PART * parts.len();
+        key.looks += work;
+        self.looks_in_vain += work;
         let shown = parts.into_iter().find(|part| pair.is_not_of_object(part));
         let is_new = shown.as_ref().is_some_and(|part| self.see(part, (&places, noise), time));
         if shown.is_some() || is_done {
@@ -201,7 +204,7 @@ impl StandingEdges {
     #[cfg(feature = "serde")]
     pub(crate) fn is_valid(&self, most_counted: usize) -> bool {
         let is_key = |key: &Key| {
-            key.places.is_valid() && key.frame <= self.frame && key.looks <= self.frame && key.compared_at >= 0.0
+            key.places.is_valid() && key.frame <= self.frame && key.looks < most_counted && key.compared_at >= 0.0
         };
         let are_sightings =
             |all: &[Sighting]| all.len() <= MOST_KEPT && all.iter().all(|seen| seen.is_valid(self.frame));

@@ -17,7 +17,7 @@ pub(crate) const MOVED: f64 = 6.0;
 /// Share of the places that must not have stayed.
 pub(crate) const MOVED_SHARE: f64 = 0.25;
 /// Two contours are compared again once they lie further apart by this factor: what did not show may then.
-pub(crate) const FURTHER: f64 = 1.3;
+pub(crate) const FURTHER: f64 = 1.6;
 /// Contours that lie so many sizes apart are compared no more: the nearest motion between them is another one.
 pub(crate) const FARTHEST: f64 = 0.35;
 /// Shortest straight part, as a share of all places. It stays above the tooth of a gear and the end of a bar.
@@ -61,12 +61,14 @@ pub(crate) const MOST_EDGES: usize = 4;
 /// Deviations of a place that the middles of an edge must have moved by across it, in the root of the sum of squares, to be moving: the middle of an
 /// edge of ten places errs by a third of one.
 pub(crate) const DRIFTS: f64 = 1.5;
-/// Contours that are compared one after the other; when they have shown nothing, fewer are.
-pub(crate) const ATTENTIVE: usize = 48;
-/// After [`ATTENTIVE`] looks in vain, frames that pass between two pairs for each contour that the first has looked at.
+/// Looks at contours one after the other; when they have shown nothing, fewer are looked at.
+pub(crate) const ATTENTIVE: usize = 64;
+/// After [`ATTENTIVE`] looks in vain, frames that pass between two pairs for each look that the first has cost.
 pub(crate) const FRAMES_PER_LOOK: usize = 7;
 /// Most frames between two pairs: an edge must be found while the object is behind it.
-pub(crate) const LONGEST_PAUSE: usize = 30;
+pub(crate) const LONGEST_PAUSE: usize = 60;
+/// Looks that cost as much as to try one part.
+pub(crate) const LOOKS_PER_PART: usize = 5;
 /// Most frames between two looks at an object that hardly moves.
 pub(crate) const LONGEST_WAIT: usize = 16;
 /// Frames after which a contour is compared with no others: an object that has hardly moved by then drifts no more than its picture does.
