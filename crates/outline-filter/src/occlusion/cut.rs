@@ -5,7 +5,8 @@ use nalgebra::Point2;
 /// Fewest points of an arc that is left: two make a side, and tell nothing of their own noise.
 const FEWEST: usize = 3;
 
-/// An outline without the points that are `on_edge`, nor so many next to them on either side, where the contour turns round the corner; `None` where no
+/// An outline without the points that are `on_edge`, nor so many next to them on either side, where the contour turns round the corner; `None`
+/// where no
 /// point is on an edge.
 ///
 /// # Errors

@@ -218,11 +218,6 @@ impl MotionFilter {
         Ok(FilterStep { time: seconds, phase: self.phase, measurement, rejection })
     }
 
-    /// Whether a frame that repeats the one before it cannot show the object: as far as is known it is not at rest.
-    fn may_have_moved(&self) -> bool {
-        self.phase != Phase::Tracking || self.track.as_ref().is_some_and(Track::moves)
-    }
-
     /// Processes a frame after the first, at a time in units of time: it is followed where the object is tracked, else looked for; what is taken is kept
     /// for remapping, and after frames that are not taken the filter may fall back on others.
     pub(super) fn process(&mut self, time: f64, outline: &Outline) -> (Option<FrameMeasurement>, Option<Rejection>) {
@@ -401,13 +396,5 @@ impl MotionFilter {
     #[must_use]
     pub fn restarts(&self) -> usize {
         self.counts.restarts
-    }
-
-    /// Counted up from 0 where poses no longer go back to the same first outline: after a [restart](Self::restarts), and where a frame has shown the
-    /// turn of the object for the first time, since nobody knows how far it had turned until then, and where an [edge](Self::standing_edges) was found
-    /// not to be of the object.
-    #[must_use]
-    pub fn segment(&self) -> usize {
-        self.counts.restarts + self.counts.begun_with_turn + self.counts.begun_without_edge
     }
 }
