@@ -2,12 +2,10 @@
 use freeform_curve_fit::{OpenArc, OpenOutline, Outline, OutlineError};
 use nalgebra::Point2;
 
-/// Fewest points of an arc that is left: two make a side, and tell nothing of their own noise.
-const FEWEST: usize = 3;
+use crate::tuning::occlusion::FEWEST_OF_ARC;
 
 /// An outline without the points that are `on_edge`, nor so many next to them on either side, where the contour turns round the corner; `None`
-/// where no
-/// point is on an edge.
+/// where no point is on an edge.
 ///
 /// # Errors
 /// No arc is left, or all that are lie on one line.
@@ -25,7 +23,7 @@ pub(super) fn without(
     for piece in outline.pieces() {
         let (points, count) = (piece.points, piece.points.len());
         let numbers = numbers_of_arcs(points, piece.closed, &on_edge, beside);
-        for numbers in numbers.into_iter().filter(|numbers| numbers.len() >= FEWEST) {
+        for numbers in numbers.into_iter().filter(|numbers| numbers.len() >= FEWEST_OF_ARC) {
             let arc = OpenArc::new(numbers.iter().map(|i| points[*i]).collect());
             let stated = deviations.as_ref().map(|all| numbers.iter().map(|i| all[before + i]).collect());
             arcs.push(match stated {

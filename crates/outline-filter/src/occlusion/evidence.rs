@@ -54,8 +54,7 @@ impl<'a> Pair<'a> {
     }
 
     /// The longest straight parts that have stayed. None where what has moved is one straight line: that may be an edge which moves in front of an
-    /// object
-    /// at rest, as well as a side of an object that comes out from behind an edge at rest.
+    /// object at rest, as well as a side of an object that comes out from behind an edge at rest.
     pub(super) fn straight_parts(&self) -> Vec<Stayed> {
         if self.moved_is_straight() {
             return Vec::new();

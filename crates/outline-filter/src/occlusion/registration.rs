@@ -2,14 +2,11 @@
 use nalgebra::{Matrix3, Point2, Rotation2, Vector2, Vector3};
 
 use super::places::{Places, median};
-use crate::tuning::{measurement::MEDIAN_TO_DEVIATION, occlusion::AGREES, registration::TUKEY};
-
-/// Most least-squares steps of one registration: they halve what is left, and more.
-const STEPS: usize = 12;
-/// A step by less than this share of the noise is the last.
-const SETTLED: f64 = 0.03;
-/// Fewest places that tell a rigid motion.
-const FEWEST: usize = 6;
+use crate::tuning::{
+    measurement::MEDIAN_TO_DEVIATION,
+    occlusion::{AGREES, FEWEST_REGISTERED, REGISTRATION_SETTLED, REGISTRATION_STEPS},
+    registration::TUKEY,
+};
 
 /// A turn about the centre of the contour that is moved, and a shift.
 #[derive(Debug, Clone, Copy, Default)]
@@ -68,7 +65,7 @@ pub(super) fn registered(
     let (mut scale, mut information) = (noise, Matrix3::zeros());
     let place = |moved: &Moved, p: &Point2<f64>| centre + Rotation2::new(moved.turn) * (p - centre) + moved.shift;
     let mut met = Vec::new();
-    for _ in 0..STEPS {
+    for _ in 0..REGISTRATION_STEPS {
         met.clear();
         for (p, _) in contour.iter().zip(taken).filter(|(_, taken)| **taken) {
             let p = place(&moved, &p);
@@ -77,7 +74,7 @@ pub(super) fn registered(
                 met.push((p, foot));
             }
         }
-        if met.len() < FEWEST {
+        if met.len() < FEWEST_REGISTERED {
             return None;
         }
         scale = noise.max(MEDIAN_TO_DEVIATION * median(met.iter().map(|(_, foot)| foot.distance).collect()));
@@ -94,7 +91,7 @@ pub(super) fn registered(
         let step = information.cholesky()?.solve(&right);
         moved.shift += step.xy();
         moved.turn += step.z / size;
-        if step.norm() < SETTLED * scale {
+        if step.norm() < REGISTRATION_SETTLED * scale {
             break;
         }
     }

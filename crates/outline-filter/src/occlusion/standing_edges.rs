@@ -94,10 +94,12 @@ impl StandingEdges {
         self.edges.iter().map(|edge| edge.shown)
     }
 
-    /// Looks at the outline of the next frame, at a time in seconds; whether it shows an edge that was not known.
-    pub(crate) fn look(&mut self, outline: &Outline, time: f64) -> bool {
+    /// Looks at the outline of the next frame, at a time in seconds; whether it shows an edge that was not known. Where nothing has been seen for
+    /// long, and the points of the frames before have `all_agreed` with the object, nothing lies in front of it that would be worth a look.
+    pub(crate) fn look(&mut self, outline: &Outline, time: f64, all_agreed: bool) -> bool {
         self.frame += 1;
-        if self.frame < self.next_look || self.edges.len() >= MOST_EDGES {
+        let is_idle = self.key.is_none() && self.looks_in_vain >= ATTENTIVE && all_agreed;
+        if self.frame < self.next_look || self.edges.len() >= MOST_EDGES || is_idle {
             return false;
         }
         let Some(places) = Places::of(outline) else { return false };

@@ -3,23 +3,20 @@ use freeform_curve_fit::Outline;
 use freeform_riccati::MotionModel;
 
 use super::motion_filter::{FilterStep, MotionFilter, Phase};
-use crate::{occlusion::StandingEdge, update::Rejection};
+use crate::{occlusion::StandingEdge, track::Track, update::Rejection};
 
 impl MotionFilter {
     /// Straight edges of the outline that are not of the object, in the order in which they were found: they stood still, or moved slowly, while one
     /// rigid motion explained the rest. Such is the side of something in front of the object. Their points are left out from the frame on in which
-    /// they
-    /// are found. The map is begun anew with it where it holds the edge; [`segment`](Self::segment) is counted up then. Empty but for rigid
-    /// motion: an outline that may be
-    /// stretched may do the same by itself.
+    /// they are found. The map is begun anew with it where it holds the edge; [`segment`](Self::segment) is counted up then. Empty but for rigid
+    /// motion: an outline that may be stretched may do the same by itself.
     pub fn standing_edges(&self) -> impl ExactSizeIterator<Item = StandingEdge> + '_ {
         self.edges.found()
     }
 
     /// Counted up from 0 where poses no longer go back to the same first outline: after a [restart](Self::restarts), and where a frame has shown the
     /// turn of the object for the first time, since nobody knows how far it had turned until then, and where an [edge](Self::standing_edges) was
-    /// found
-    /// not to be of the object.
+    /// found not to be of the object.
     #[must_use]
     pub fn segment(&self) -> usize {
         self.counts.restarts + self.counts.begun_with_turn + self.counts.begun_without_edge
@@ -29,9 +26,15 @@ impl MotionFilter {
         self.settings.model == MotionModel::Rigid
     }
 
+    /// Whether the object is tracked, the last frame was taken, and the points of the frames agree with the outline.
+    pub(super) fn all_agrees(&self) -> bool {
+        let is_taken = self.phase == Phase::Tracking && self.counts.rejected_in_a_row == 0;
+        is_taken && self.track.as_ref().is_some_and(Track::usually_agrees)
+    }
+
     /// Begins anew with a frame whose points along an edge that was just found are left out, if the map holds the edge as a side of the object, as
-    /// it does
-    /// where the object was cut off by it from the beginning on; whether it has. A map of what lies beyond the edge was begun before, and stays.
+    /// it does where the object was cut off by it from the beginning on; whether it has. A map of what lies beyond the edge was begun before, and
+    /// stays.
     pub(super) fn begin_without_edge(&mut self, time: f64, left: &Outline) -> bool {
         let holds_edge =
             self.track.as_ref().is_none_or(|track| self.edges.end(track.outline_points(), &left.centroid()));
@@ -39,8 +42,7 @@ impl MotionFilter {
     }
 
     /// Begins anew with what is left of a frame beside an edge; whether enough is. A map that the edge was not taken for a side of, and which does
-    /// not
-    /// explain that either, was led astray by the edge.
+    /// not explain that either, was led astray by the edge.
     pub(super) fn begin_with(&mut self, time: f64, left: &Outline) -> bool {
         let is_begun = self.start(time, left).is_ok();
         if is_begun {

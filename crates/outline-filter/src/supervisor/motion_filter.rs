@@ -194,7 +194,7 @@ impl MotionFilter {
         self.stated.take();
         self.choose_time_unit(time);
         let (seconds, time) = (time, time / self.seconds_per_unit());
-        let shows_edge = self.looks_for_edges() && self.edges.look(outline, seconds);
+        let shows_edge = self.looks_for_edges() && self.edges.look(outline, seconds, self.all_agrees());
         let Some(left) = self.edges.left_of(outline) else { return Ok(self.be_hidden(seconds, time, outline)) };
         let left = &*left;
         if self.track.is_none() || shows_edge && self.begin_without_edge(time, left) {

@@ -73,6 +73,11 @@ impl Track {
         disagrees.then_some(Doubt::Points)
     }
 
+    /// Whether hardly any point usually disagrees with the outline.
+    pub(crate) fn usually_agrees(&self) -> bool {
+        self.usual.disagreeing <= 1.0 - tuning::ALL_AGREE
+    }
+
     /// A gate for frames that show all of the outline, but for the share of the points that usually disagrees, once that is known.
     pub(crate) fn gate_of_all(&self, gate: Gate) -> Gate {
         let is_known = self.usual.frames >= tuning::FEWEST_FRAMES;

@@ -73,3 +73,11 @@ pub(crate) const LOOKS_PER_PART: usize = 5;
 pub(crate) const LONGEST_WAIT: usize = 16;
 /// Frames after which a contour is compared with no others: an object that has hardly moved by then drifts no more than its picture does.
 pub(crate) const LONGEST_PAIR: usize = 1024;
+/// Fewest points of an arc that is left beside an edge: two make a side, and tell nothing of their own noise.
+pub(crate) const FEWEST_OF_ARC: usize = 3;
+/// Most least-squares steps of one registration: they halve what is left, and more.
+pub(crate) const REGISTRATION_STEPS: usize = 12;
+/// A step by less than this share of the noise is the last.
+pub(crate) const REGISTRATION_SETTLED: f64 = 0.03;
+/// Fewest places that tell a rigid motion.
+pub(crate) const FEWEST_REGISTERED: usize = 6;
