@@ -1,6 +1,6 @@
 use std::fmt;
 
-use freeform_outline_filter::{Ambiguity, Dynamics, PlaneAmbiguity, WrongFamily};
+use freeform_outline_filter::{Ambiguity, Dynamics, PlaneAmbiguity, StandingEdge, WrongFamily};
 use freeform_riccati::MotionModel;
 
 use crate::{
@@ -98,6 +98,8 @@ pub enum Warning {
         /// The model.
         motion: MotionModel,
     },
+    /// A straight part of the outline stood still, or moved slowly, while one rigid motion explained the rest: it is left out.
+    StandingEdge(StandingEdge),
     /// Other angular velocities explain the outlines as well.
     Aliases {
         /// These, in rad/s, nearest to zero first.
@@ -151,7 +153,7 @@ impl Warning {
             Self::PointsOutOfOrder { .. } | Self::Diverged | Self::StateLost { .. } => 0,
             Self::TooManyRejected { .. } | Self::Lost | Self::Reacquiring { .. } => 1,
             Self::OfTwoFrames | Self::Ambiguous(_) | Self::TwoPlanes(_) | Self::AmbiguousCorrespondence { .. } => 2,
-            Self::WrongFamily { .. } | Self::PlaneMisfit { .. } | Self::AffineBias => 3,
+            Self::WrongFamily { .. } | Self::PlaneMisfit { .. } | Self::AffineBias | Self::StandingEdge(_) => 3,
             Self::Aliases { .. } | Self::RotationFromPath => 4,
             Self::NotObservable { .. }
             | Self::NotKnown { .. }
@@ -190,6 +192,7 @@ impl Warning {
             Self::WrongFamily { family: WrongFamily::RollingShutter, .. } => "wrong_family_rolling_shutter",
             Self::WrongFamily { family: WrongFamily::Lens, .. } => "wrong_family_lens",
             Self::WrongFamily { family: WrongFamily::Shape, .. } => "wrong_family_shape",
+            Self::StandingEdge(_) => "standing_edge",
             Self::Aliases { .. } => "aliases",
             Self::Diverged => "diverged",
             Self::StateLost { .. } => "state_lost",
@@ -232,6 +235,7 @@ impl fmt::Display for Warning {
             Self::PlaneMisfit { excess } => write_plane_misfit(f, *excess),
             Self::TooManyRejected { rejected, frames } => write_too_many_rejected(f, *rejected, *frames),
             Self::WrongFamily { family, motion } => write_wrong_family(f, *family, *motion),
+            Self::StandingEdge(edge) => write_standing_edge(f, edge),
             Self::Aliases { omega, motion } => write_aliases(f, omega, *motion),
             Self::Diverged => f.write_str("the identifier diverged: its numbers are not finite"),
             Self::StateLost { reason } => write_state_lost(f, reason),
@@ -286,6 +290,16 @@ fn write_two_planes(f: &mut fmt::Formatter<'_>, ambiguity: &PlaneAmbiguity) -> f
     write!(
         f,
         "two motions of a plane explain the outlines, with probabilities {first} and {second}; they differ in {parameters}"
+    )
+}
+
+fn write_standing_edge(f: &mut fmt::Formatter<'_>, edge: &StandingEdge) -> fmt::Result {
+    let [x1, y1, x2, y2] = [edge.from.x, edge.from.y, edge.to.x, edge.to.y].map(|x| significant(x, 4));
+    write!(
+        f,
+        "a straight part of the outline, from ({x1}, {y1}) to ({x2}, {y2}), does not move with the rest, as the edge of something in front of the \
+         object: it is left out from {} s on, poses before are in doubt; leave out what lies there (--margins), or give open arcs without it",
+        significant(edge.since, 4)
     )
 }
 

@@ -48,5 +48,6 @@ pub(super) fn of_following(filter: &MotionFilter) -> Vec<Warning> {
         (restarts > 0).then_some(Warning::Restarted { times: restarts }),
         are_many.then_some(Warning::FramesRejected { rejected, frames }),
     ];
-    warnings.into_iter().flatten().collect()
+    let edges = filter.standing_edges().map(Warning::StandingEdge);
+    edges.chain(warnings.into_iter().flatten()).collect()
 }

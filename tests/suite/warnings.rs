@@ -3,11 +3,11 @@ use std::collections::BTreeSet;
 
 use freeform_motion::Warning;
 use freeform_motion::estimate::PlaneEstimate;
-use freeform_motion::outline_filter::{Ambiguity, PlaneAmbiguity, PlaneSolution, Rejection, WrongFamily};
+use freeform_motion::outline_filter::{Ambiguity, PlaneAmbiguity, PlaneSolution, Rejection, StandingEdge, WrongFamily};
 use freeform_motion::outline_io::TracingWarning;
 use freeform_motion::riccati::{MotionModel, PlaneMotion};
 use freeform_motion::tracker::{FrameRejection, RejectionCause};
-use nalgebra::SMatrix;
+use nalgebra::{Point2, SMatrix};
 
 const PAGE: &str = include_str!("../../docs/warnings.md");
 const SOURCE: &str = include_str!("../../src/warning.rs");
@@ -44,6 +44,11 @@ fn examples() -> Vec<Warning> {
         family(WrongFamily::RollingShutter),
         family(WrongFamily::Lens),
         family(WrongFamily::Shape),
+        Warning::StandingEdge(StandingEdge {
+            from: Point2::new(412.0, 96.5),
+            to: Point2::new(398.2, 310.4),
+            since: 0.9667,
+        }),
         Warning::PlaneMisfit { excess: 3.2 },
         Warning::AffineBias,
         Warning::MotionChanged { dynamics: None },

@@ -14,6 +14,7 @@
 //! | `track` | one object: the steps of a frame; growth and remapping of the map |
 //! | `dynamics` | hypotheses of how the motion goes on, side by side |
 //! | `update` | solve for a `Proposal`, test it at the `Gate`, commit it |
+//! | `occlusion` | straight edges of other things, found from outlines and left out |
 //! | `measurement` | frame, association, point-to-line residuals and Jacobians, noise |
 //! | `prediction` | step, process noise, shape process noise |
 //! | `map` | cells, contour, nearest-cell field, null directions |
@@ -55,6 +56,7 @@ mod drawn_curves;
 mod dynamics;
 mod map;
 mod measurement;
+mod occlusion;
 mod plane;
 mod prediction;
 mod search;
@@ -66,6 +68,7 @@ mod vectors;
 
 pub use batch::{BatchError, BatchEstimate, estimate_batch};
 pub use dynamics::{Dynamics, DynamicsWeights, UnknownDynamics, WrongFamily};
+pub use occlusion::StandingEdge;
 pub use plane::{PlaneAmbiguity, PlaneFilter, PlaneSolution, PlaneUnknown};
 pub use supervisor::{
     Ambiguity, ExpectedOutline, FilterError, FilterSettings, FilterStep, MotionFilter, Phase, Unstated,

@@ -193,12 +193,9 @@ impl<const N: usize> Hypothesis<N> {
         let covariance = &mut self.covariance.data.0;
         for j in if all { 0 } else { k - 2 }..k {
             let variance = level * step.pose_variance[j];
-            for (row, column, share) in step.by_change {
-                let (r, c) = (row * k + j, column * k + j);
-                let added = share * variance;
-                covariance[c][r] += added;
-                if r != c {
-                    covariance[r][c] += added;
+            for (row, shares) in step.by_change.iter().enumerate() {
+                for (column, share) in shares.iter().enumerate() {
+                    covariance[column * k + j][row * k + j] += share * variance;
                 }
             }
         }

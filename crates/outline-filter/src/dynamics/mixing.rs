@@ -7,6 +7,7 @@ use super::{
     centred::{CentredVector, centred_generator, parts},
     course::Course,
     hypothesis::Hypothesis,
+    interacting::MOST,
 };
 use crate::{tuning::dynamics as tuning, vectors::vectorised};
 
@@ -33,9 +34,9 @@ pub(super) fn mix<const N: usize>(
     if hypotheses.len() < 2 {
         return;
     }
-    let with_all = Pooled::of(hypotheses, weights, model, Accelerations::All);
+    let with_all = Pooled::of(hypotheses, weights, model);
     let of_velocity = with_all.of_velocity(hypotheses, weights, model);
-    let of_generator = Pooled::of(hypotheses, weights, model, Accelerations::OfGenerator);
+    let of_generator = with_all.of_generator(hypotheses, weights, model);
     let all: f64 = changing(hypotheses, weights).map(|(_, weight)| weight).sum();
     let shares: f64 = hypotheses.iter().map(|hypothesis| arriving(hypothesis.course)).sum();
     for (number, (hypothesis, weight)) in hypotheses.iter_mut().zip(weights).enumerate() {
@@ -150,23 +151,50 @@ impl<const N: usize> Pooled<N> {
     }
 
     /// With accelerations of all parameters.
-    fn of(hypotheses: &[Hypothesis<N>], weights: &[f64], model: MotionModel, accelerations: Accelerations) -> Self {
-        let k = N / 3;
-        let mut pooled = Self { mean: SVector::zeros(), covariance: SMatrix::zeros(), without: 0.0 };
-        let sources = counting(hypotheses, weights);
-        for (source, share) in sources.clone() {
-            pooled.mean += accelerations.mean_of(source, model) * share;
+    fn of(hypotheses: &[Hypothesis<N>], weights: &[f64], model: MotionModel) -> Self {
+        let empty = Self { mean: SVector::zeros(), covariance: SMatrix::zeros(), without: 0.0 };
+        empty.with_columns(0, (hypotheses, weights), model, Accelerations::All)
+    }
+
+    /// With accelerations beside what the turn makes of them; pose and motion are those with all.
+    fn of_generator(&self, hypotheses: &[Hypothesis<N>], weights: &[f64], model: MotionModel) -> Self {
+        let first = 2 * (N / 3);
+        let mut pooled = Self { mean: self.mean, covariance: self.covariance, without: 0.0 };
+        pooled.mean.as_mut_slice()[first..].fill(0.0);
+        pooled.covariance.data.0[first..].fill([0.0; N]);
+        let mut pooled = pooled.with_columns(first, (hypotheses, weights), model, Accelerations::OfGenerator);
+        let (before, from) = pooled.covariance.data.0.split_at_mut(first);
+        for (j, column) in before.iter_mut().enumerate() {
+            column[first..].iter_mut().zip(from.iter()).for_each(|(entry, of)| *entry = of[j]);
         }
-        for (source, share) in sources {
-            let apart = accelerations.mean_of(source, model) - pooled.mean;
+        pooled
+    }
+
+    /// Adds the entries of the mean and the columns of the covariance from one on, which are none yet.
+    fn with_columns(
+        self,
+        first: usize,
+        (hypotheses, weights): (&[Hypothesis<N>], &[f64]),
+        model: MotionModel,
+        accelerations: Accelerations,
+    ) -> Self {
+        let (k, mut pooled) = (N / 3, self);
+        let sources = counting(hypotheses, weights);
+        let mut means = [SVector::zeros(); MOST];
+        for ((source, share), mean) in sources.clone().zip(&mut means) {
+            *mean = accelerations.mean_of(source, model);
+            (first..N).for_each(|i| pooled.mean[i] += mean[i] * share);
+        }
+        for ((source, share), mean) in sources.zip(&means) {
+            let apart = mean - pooled.mean;
             let known = if accelerations.are_part_of(source.course) { 3 * k } else { 2 * k };
-            let (covariance, of_source) = (&mut pooled.covariance.data.0, &source.covariance.data.0);
+            let (covariance, of_source) = (&mut pooled.covariance.data.0[first..], &source.covariance.data.0[first..]);
             vectorised(
                 #[inline(always)]
                 || {
                     let apart: [f64; N] = apart.into();
                     let of_known: [f64; N] = std::array::from_fn(|i| if i < known { share } else { 0.0 });
-                    for (j, (entries, own)) in covariance.iter_mut().zip(of_source).enumerate() {
+                    for (j, (entries, own)) in (first..N).zip(covariance.iter_mut().zip(of_source)) {
                         let (mut column, by_column) = ([0.0; N], share * apart[j]);
                         let counts = if j < known { 1.0 } else { 0.0 };
                         for i in 0..N {

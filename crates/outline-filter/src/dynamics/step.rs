@@ -20,8 +20,8 @@ pub(super) struct Step<'a> {
     pub(super) centre: Vector2<f64>,
     /// Variance of a pose as one frame tells it, of every parameter.
     pub(super) pose_variance: &'a CentredVector,
-    /// What accelerations that change at random add: blocks, and what they get of a variance over the fifth power of a step.
-    pub(super) by_change: [(usize, usize, f64); 6],
+    /// What accelerations that change at random add to errors, motions and accelerations: parts of a variance over the fifth power of a step.
+    pub(super) by_change: [[f64; 3]; 3],
 }
 
 impl<'a> Step<'a> {
@@ -39,13 +39,12 @@ impl<'a> Step<'a> {
             let by = model.motion_between(&as_map(&turned), 1.0)?;
             turned_by = CentredVector::from_fn(|j, _| by[j]);
         }
+        let (of_motion, of_acceleration) = (1.0 / (8.0 * seconds), 1.0 / (6.0 * seconds.powi(2)));
+        let of_both = 1.0 / (2.0 * seconds.powi(3));
         let by_change = [
-            (0, 0, 1.0 / 20.0),
-            (0, 1, 1.0 / (8.0 * seconds)),
-            (0, 2, 1.0 / (6.0 * seconds.powi(2))),
-            (1, 1, 1.0 / (3.0 * seconds.powi(2))),
-            (1, 2, 1.0 / (2.0 * seconds.powi(3))),
-            (2, 2, 1.0 / seconds.powi(4)),
+            [1.0 / 20.0, of_motion, of_acceleration],
+            [of_motion, 1.0 / (3.0 * seconds.powi(2)), of_both],
+            [of_acceleration, of_both, 1.0 / seconds.powi(4)],
         ];
         let centre = from.centre() - to.centre();
         Some(Self { model, seconds, turned, turned_by, local, centre, pose_variance, by_change })

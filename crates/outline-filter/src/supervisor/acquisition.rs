@@ -15,7 +15,7 @@ use crate::{
     tuning::{
         supervisor::{FRAMES_OF_SEARCH, LARGEST_INNOVATION},
         turn_profile::LEAP,
-        usual_agreement::{ELSEWHERE, FURTHER_ALONG},
+        usual_agreement::{BESIDE, ELSEWHERE, FURTHER_ALONG},
     },
     update::Gate,
 };
@@ -88,9 +88,11 @@ impl MotionFilter {
             let is_direction = |doubt: Doubt| matches!(doubt, Doubt::Direction { .. });
             let lies_near = track.turn_to(of_other.body_pose()).abs() < LEAP;
             let lies_further = is_direction(doubt) && lies_near && !found.doubt.is_some_and(is_direction);
-            if lies_further && likelihoods[0].is_worse_by_fit(FURTHER_ALONG, &likelihoods[1])
-                || likelihoods[0].is_worse_by(ELSEWHERE, &likelihoods[1])
-            {
+            let is_better = lies_further && likelihoods[0].is_worse_by_fit(FURTHER_ALONG, &likelihoods[1])
+                || likelihoods[0].is_worse_by(ELSEWHERE, &likelihoods[1]);
+            // By its own points alone every frame is explained best in a pose beside that which all of them say.
+            let is_beside = of_other.displacement_from(&poses[0]) < BESIDE * track.noise().sigma;
+            if is_better && !is_beside {
                 *self = other;
                 return found;
             }

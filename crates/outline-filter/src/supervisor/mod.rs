@@ -3,6 +3,7 @@ mod acquisition;
 mod ambiguity;
 mod candidate;
 mod clock;
+mod edges;
 mod error;
 mod expected_outline;
 mod initialisation;

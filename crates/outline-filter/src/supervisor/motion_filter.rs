@@ -19,6 +19,7 @@ use super::{
 use crate::{
     dynamics::{DynamicsFilter, DynamicsWeights},
     measurement::Frame,
+    occlusion::StandingEdges,
     track::{Doubt, KnownOutline, Outcome, Track},
     update::{FrameMeasurement, Rejection},
 };
@@ -73,6 +74,8 @@ pub(super) struct Counts {
     pub(super) restarts: usize,
     /// Times that the map was begun anew with a frame that showed the turn at last.
     pub(super) begun_with_turn: usize,
+    /// Times that the map was begun anew with a frame whose points along an edge were left out.
+    pub(super) begun_without_edge: usize,
     /// Starts in a row after which the object was not found again.
     pub(super) fruitless_starts: usize,
 }
@@ -86,7 +89,7 @@ impl Counts {
     }
 
     /// The object was not found in a frame.
-    fn add_rejected(&mut self) {
+    pub(super) fn add_rejected(&mut self) {
         self.rejected_in_recording += 1;
         self.rejected_by_track += 1;
         self.rejected_in_a_row += 1;
@@ -147,6 +150,8 @@ pub struct MotionFilter {
     pub(super) window: InitialisationWindow,
     pub(super) repeated: RepeatedFrames,
     pub(super) before_repeated: Option<Box<BeforeRepeated>>,
+    /// Straight edges that are not of the object.
+    pub(super) edges: StandingEdges,
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) frame: Frame,
     /// What is stated after the last step, once it has been asked for.
@@ -174,6 +179,7 @@ impl MotionFilter {
             window: InitialisationWindow::default(),
             repeated: RepeatedFrames::default(),
             before_repeated: None,
+            edges: StandingEdges::default(),
             frame: Frame::default(),
             stated: OnceLock::new(),
         })
@@ -188,8 +194,13 @@ impl MotionFilter {
         self.stated.take();
         self.choose_time_unit(time);
         let (seconds, time) = (time, time / self.seconds_per_unit());
-        if self.track.is_none() {
-            self.start(time, outline)?;
+        let shows_edge = self.looks_for_edges() && self.edges.look(outline, seconds);
+        let Some(left) = self.edges.left_of(outline) else { return Ok(self.be_hidden(seconds, time, outline)) };
+        let left = &*left;
+        if self.track.is_none() || shows_edge && self.begin_without_edge(time, left) {
+            if self.track.is_none() {
+                self.start(time, left)?;
+            }
             self.repeated.take(seconds, outline);
             self.counts.accepted_in_recording += 1;
             return Ok(FilterStep { time: seconds, phase: self.phase, measurement: None, rejection: None });
@@ -200,13 +211,11 @@ impl MotionFilter {
             return Ok(FilterStep { time: seconds, phase: self.phase, measurement: None, rejection });
         }
         self.go_back_before_repeated();
-        let (measurement, rejection) = self.process(time, outline);
+        let (measurement, rejection) = self.process(time, left);
+        if shows_edge && rejection.is_some() {
+            self.begin_with(time, left);
+        }
         Ok(FilterStep { time: seconds, phase: self.phase, measurement, rejection })
-    }
-
-    /// Whether a frame that repeats the one before it cannot show the object: as far as is known it is not at rest.
-    fn may_have_moved(&self) -> bool {
-        self.phase != Phase::Tracking || self.track.as_ref().is_some_and(Track::moves)
     }
 
     /// Processes a frame after the first, at a time in units of time: it is followed where the object is tracked, else looked for; what is taken is kept
@@ -387,12 +396,5 @@ impl MotionFilter {
     #[must_use]
     pub fn restarts(&self) -> usize {
         self.counts.restarts
-    }
-
-    /// Counted up from 0 where poses no longer go back to the same first outline: after a [restart](Self::restarts), and where a frame has shown the
-    /// turn of the object for the first time, since nobody knows how far it had turned until then.
-    #[must_use]
-    pub fn segment(&self) -> usize {
-        self.counts.restarts + self.counts.begun_with_turn
     }
 }

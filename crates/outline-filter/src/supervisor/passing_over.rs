@@ -4,8 +4,14 @@ use super::{
     repeated_frames::BeforeRepeated,
     tracking::predict,
 };
+use crate::track::Track;
 
 impl MotionFilter {
+    /// Whether a frame that repeats the one before it cannot show the object: as far as is known it is not at rest.
+    pub(super) fn may_have_moved(&self) -> bool {
+        self.phase != Phase::Tracking || self.track.as_ref().is_some_and(Track::moves)
+    }
+
     /// Moves on to the time of a frame that repeats the one before it.
     pub(super) fn pass_over(&mut self, time: f64) {
         self.clock.last_frame = time;

@@ -9,7 +9,7 @@ use crate::track::{SavedCells, Track};
 use crate::tuning::symmetry::LARGEST_ORDER;
 
 /// Version of the format: another one for every change of what is saved.
-const VERSION: u32 = 20;
+const VERSION: u32 = 21;
 
 /// The format of the bytes.
 const FORMAT: StateFormat = state_format(*b"filt", "filter");
@@ -99,6 +99,9 @@ impl MotionFilter {
         if !self.window.restore(&self.settings, restored_with) {
             return inconsistent("first frames");
         }
+        if !self.edges.is_valid(StateFormat::MOST_COUNTED) {
+            return inconsistent("edges");
+        }
         if !self.unfound_are_valid() {
             return inconsistent("frames without the object");
         }
@@ -125,10 +128,11 @@ impl MotionFilter {
             rejected_by_track,
             restarts,
             begun_with_turn,
+            begun_without_edge,
             fruitless_starts,
         } = self.counts;
         let of_recording = [accepted_in_recording, rejected_in_recording, rejected_in_a_row];
-        let of_starts = [restarts, begun_with_turn, fruitless_starts];
+        let of_starts = [restarts, begun_with_turn, begun_without_edge, fruitless_starts];
         of_recording.iter().chain(&of_starts).chain(&[accepted_by_track, rejected_by_track]).all(|count| *count < most)
     }
 }

@@ -1,6 +1,6 @@
 //! A track moved to where a frame shows its object, away from where it was expected.
 use freeform_riccati::{MAX_PARAMETERS, map_point};
-use nalgebra::SVector;
+use nalgebra::{Matrix3, SVector};
 
 use super::Track;
 use crate::{belief::Belief, prediction::TimeOfChange};
@@ -28,12 +28,18 @@ impl Track {
         if seconds <= 0.0 || step <= 0.0 || !self.map.is_shown_in(&pose) {
             return false;
         }
-        let apart = |centre| (map_point(&pose, centre) - map_point(&before, centre)).norm_squared();
-        let cells = self.map.cells();
-        let mean_square = cells.iter().map(|cell| apart(&cell.centre)).sum::<f64>() / cells.len() as f64;
         self.belief.pose = pose;
+        let mean_square = self.displacement_from(&before).powi(2);
         self.belief.motion.iter_mut().zip(displacement).for_each(|(rate, by)| *rate += by / seconds);
         self.add_change([mean_square / (seconds * seconds * step); 2], TimeOfChange::Any);
         true
+    }
+
+    /// How far the outline lies from where another pose has it, root mean square, normalised.
+    pub(crate) fn displacement_from(&self, other: &Matrix3<f64>) -> f64 {
+        let pose = &self.belief.pose;
+        let apart = |centre| (map_point(pose, centre) - map_point(other, centre)).norm_squared();
+        let cells = self.map.cells();
+        (cells.iter().map(|cell| apart(&cell.centre)).sum::<f64>() / cells.len() as f64).sqrt()
     }
 }

@@ -3,6 +3,7 @@
 //! Lengths are in RMS radii of the first outline unless a line says otherwise; "deviations" are standard deviations.
 mod frame;
 mod motion;
+pub(crate) mod occlusion;
 mod outline;
 pub(crate) mod plane;
 mod search;

@@ -197,6 +197,9 @@ pub(crate) mod usual_agreement {
     pub(crate) const ALL_OF_IT: f64 = 0.97;
     /// Deviations by which another pose must explain such a frame better: more points than usual speak for it already.
     pub(crate) const ELSEWHERE: f64 = 3.0;
+    /// Distance of the outline in that pose, root mean square, in the noise of a point, below which it is no other place: points that disagree lie
+    /// further off, and what the points of one frame say of the pose less, a fraction of it.
+    pub(crate) const BESIDE: f64 = 1.0;
     /// Squares of the noise by which a pose further along a direction must explain a frame better, of which few points agree that tell it: four
     /// deviations of one parameter.
     pub(crate) const FURTHER_ALONG: f64 = 16.0;

@@ -27,6 +27,7 @@ mod recording;
 #[cfg(feature = "serde")]
 mod saved_state;
 mod seen_aslant;
+mod standing_edges;
 mod thrown_bodies;
 mod uneven_motion;
 mod washers;

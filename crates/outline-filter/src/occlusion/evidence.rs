@@ -1,0 +1,133 @@
+//! Whether two contours show a straight edge that is not of the object: one motion explains the rest, and takes the edge elsewhere.
+use nalgebra::Point2;
+
+use super::{
+    line::{Line, longest_straight},
+    places::{Foot, Places, median},
+    registration::{Moved, registered},
+};
+use crate::tuning::occlusion::{
+    AGREES, FEWEST_STRAIGHT, FITS_OF_LINE, GAIN_OF_PART, LEAST_GAIN, MOST_OF_LINE, MOST_SCATTER, MOST_TRIED,
+    MOVED_SHARE, OFF, PART_DISAGREES, REST_AGREES, SHORTEST_SHARE,
+};
+
+/// A straight part of a contour that has stayed where it was in an earlier frame.
+#[derive(Debug, Clone)]
+pub(super) struct Stayed {
+    pub(super) line: Line,
+    /// Its places, by their numbers.
+    places: Vec<usize>,
+}
+
+impl Stayed {
+    pub(super) fn points(&self, contour: &Places) -> Vec<Point2<f64>> {
+        self.places.iter().map(|i| contour.point(*i)).collect()
+    }
+}
+
+/// A contour beside that of an earlier frame.
+pub(super) struct Pair<'a> {
+    now: &'a Places,
+    before: &'a Places,
+    noise: f64,
+    feet: Vec<Foot>,
+}
+
+impl<'a> Pair<'a> {
+    pub(super) fn new(now: &'a Places, before: &'a Places, noise: f64) -> Self {
+        Self { now, before, noise, feet: now.iter().map(|p| before.nearest(&p)).collect() }
+    }
+
+    fn has_stayed(&self, i: usize) -> bool {
+        self.feet[i].distance < AGREES * self.noise
+    }
+
+    /// How far those places have moved that have not stayed, by their median.
+    pub(super) fn displacement(&self) -> f64 {
+        median(self.feet.iter().map(|foot| foot.distance).filter(|distance| *distance >= AGREES * self.noise).collect())
+    }
+
+    /// Whether so much of the contour has moved that what stayed tells something.
+    pub(super) fn has_moved(&self) -> bool {
+        let moved = (0..self.now.len()).filter(|i| !self.has_stayed(*i)).count();
+        moved as f64 >= MOVED_SHARE * self.now.len() as f64
+    }
+
+    /// The longest straight parts that have stayed. None where what has moved is one straight line: that may be an edge which moves in front of an
+    /// object
+    /// at rest, as well as a side of an object that comes out from behind an edge at rest.
+    pub(super) fn straight_parts(&self) -> Vec<Stayed> {
+        if self.moved_is_straight() {
+            return Vec::new();
+        }
+        let fewest = FEWEST_STRAIGHT.max((SHORTEST_SHARE * self.now.len() as f64) as usize);
+        let straight = |run: Vec<usize>| {
+            let points: Vec<_> = run.iter().map(|i| self.now.point(*i)).collect();
+            let (range, line) = longest_straight(&points, self.noise, fewest)?;
+            Some(Stayed { line, places: run[range].to_vec() })
+        };
+        let mut parts: Vec<_> = self.runs_that_stayed().into_iter().filter_map(straight).collect();
+        parts.sort_by_key(|part| std::cmp::Reverse(part.places.len()));
+        parts.truncate(MOST_TRIED);
+        parts
+    }
+
+    /// Whether the places that have not stayed lie on one line, but for a few at its ends.
+    fn moved_is_straight(&self) -> bool {
+        let mut moved: Vec<_> =
+            (0..self.now.len()).filter(|i| !self.has_stayed(*i)).map(|i| self.now.point(i)).collect();
+        let most = (MOST_OF_LINE * moved.len() as f64) as usize;
+        for _ in 0..FITS_OF_LINE {
+            let Some((line, _)) = Line::through(moved.iter().take(most).copied()) else { return false };
+            moved.sort_unstable_by(|a, b| line.distance(a).abs().total_cmp(&line.distance(b).abs()));
+            if most > 0 && line.distance(&moved[most - 1]).abs() < AGREES * self.noise {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Runs of neighbouring places that have stayed; one between two that have is of them. None where all have.
+    fn runs_that_stayed(&self) -> Vec<Vec<usize>> {
+        let count = self.now.len();
+        let stayed = |i: usize| {
+            self.has_stayed(i) || self.has_stayed((i + 1) % count) && self.has_stayed((i + count - 1) % count)
+        };
+        let Some(first) = (0..count).find(|i| !stayed(*i)) else { return Vec::new() };
+        let round: Vec<_> = (first..first + count).map(|i| i % count).collect();
+        round.split(|i| !stayed(*i)).filter(|run| !run.is_empty()).map(<[usize]>::to_vec).collect()
+    }
+
+    /// Whether a part that has stayed is not of the object. One rigid motion explains the rest of the contour. It takes the part off the earlier
+    /// contour, so that it is no other side of the object that has come there; and no rigid motion of all explains as much.
+    pub(super) fn is_not_of_object(&self, part: &Stayed) -> bool {
+        let Self { now, before, noise, .. } = *self;
+        let is_near = |p: &Point2<f64>| part.line.distance(p).abs() < AGREES * noise;
+        let mut is_rest: Vec<_> = now.iter().map(|p| !is_near(&p)).collect();
+        part.places.iter().for_each(|i| is_rest[*i] = false);
+        let near: Vec<_> = before.iter().map(|p| is_near(&p)).collect();
+        let of_edge: Vec<_> = (0..near.len()).map(|i| near[i] && near[(i + 1) % near.len()]).collect();
+        let Some(rest) = registered((now, &is_rest), (before, &of_edge), noise, Moved::default()) else { return false };
+        let of_rest = || (0..now.len()).filter(|i| is_rest[*i]);
+        if rest.scale > MOST_SCATTER * noise || rest.agreement(of_rest()) < REST_AGREES {
+            return false;
+        }
+        let normal = part.line.normal();
+        let off = |i: &&usize| rest.distances[**i] > OFF * rest.scale.max(rest.deviation_of(**i, &normal));
+        let count = part.places.len() as f64;
+        if (part.places.iter().filter(off).count() as f64) < PART_DISAGREES * count {
+            return false;
+        }
+        let all = now.len() as f64;
+        let rest_count = of_rest().count() as f64;
+        let with_edge = (all - rest_count + rest.agreement(of_rest()) * rest_count) / all;
+        let [every, no_side] = [vec![true; now.len()], vec![false; before.len()]];
+        let of_one = |begun_with| {
+            let together = registered((now, &every), (before, &no_side), noise, begun_with)?;
+            let agrees = |distance: &&f64| **distance < AGREES * rest.scale;
+            Some(together.distances.iter().filter(agrees).count() as f64 / all)
+        };
+        let one = [Moved::default(), rest.moved].into_iter().filter_map(of_one).fold(0.0, f64::max);
+        with_edge - one > LEAST_GAIN.max(GAIN_OF_PART * count / all)
+    }
+}

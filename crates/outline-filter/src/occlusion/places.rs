@@ -1,0 +1,186 @@
+//! A contour as a few places: means of neighbouring points, which err less than these.
+use freeform_curve_fit::Outline;
+use nalgebra::{Point2, Vector2};
+
+use crate::{
+    tuning::{
+        measurement::MEDIAN_TO_DEVIATION,
+        occlusion::{FEWEST_PLACES, LEAST_NOISE, MOST_PLACES, SPACING_NOISE},
+    },
+    vectors::vectorised,
+};
+
+/// Places along a closed contour.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Places {
+    x: Vec<f64>,
+    y: Vec<f64>,
+    /// Points that each is the mean of.
+    pub(super) points_each: usize,
+}
+
+/// The place on a contour nearest to a point.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Foot {
+    /// The side that it lies on, by the place that it begins at.
+    pub(super) side: usize,
+    pub(super) point: Point2<f64>,
+    pub(super) distance: f64,
+}
+
+impl Places {
+    /// Of the boundary of an outline; `None` of one that is not closed, or has few points.
+    pub(super) fn of(outline: &Outline) -> Option<Self> {
+        let points = outline.pieces().next().filter(|piece| piece.closed)?.points;
+        let points_each = points.len().div_ceil(MOST_PLACES);
+        let count = points.len() / points_each.max(1);
+        if count < FEWEST_PLACES {
+            return None;
+        }
+        let mean = |k: usize| {
+            let part = &points[k * points.len() / count..(k + 1) * points.len() / count];
+            part.iter().fold(Vector2::zeros(), |sum, p| sum + p.coords) / part.len() as f64
+        };
+        let (x, y) = (0..count).map(mean).map(|p| (p.x, p.y)).unzip();
+        Some(Self { x, y, points_each })
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.x.len()
+    }
+
+    pub(super) fn point(&self, i: usize) -> Point2<f64> {
+        Point2::new(self.x[i], self.y[i])
+    }
+
+    pub(super) fn iter(&self) -> impl ExactSizeIterator<Item = Point2<f64>> + Clone + '_ {
+        (0..self.len()).map(|i| self.point(i))
+    }
+
+    /// The place so many after another one, or before it, all round.
+    fn round(&self, i: usize, by: isize) -> Point2<f64> {
+        self.point((i as isize + by).rem_euclid(self.len() as isize) as usize)
+    }
+
+    pub(super) fn centre(&self) -> Point2<f64> {
+        (self.iter().fold(Vector2::zeros(), |sum, p| sum + p.coords) / self.len() as f64).into()
+    }
+
+    /// Root mean square distance from the centre.
+    pub(super) fn size(&self) -> f64 {
+        let centre = self.centre();
+        (self.iter().map(|p| (p - centre).norm_squared()).sum::<f64>() / self.len() as f64).sqrt()
+    }
+
+    fn spacing(&self) -> f64 {
+        median((0..self.len()).map(|i| (self.round(i, 1) - self.point(i)).norm()).collect())
+    }
+
+    /// Standard deviation of the places across the contour: by how much they lie off the cubic through their four neighbours, for most of them.
+    pub(super) fn noise(&self) -> f64 {
+        let off = |i: usize| {
+            let [a, b, p, c, d] = [-2, -1, 0, 1, 2].map(|by| self.round(i, by).coords);
+            let chord = c - b;
+            let error = p - ((b + c) * 4.0 - a - d) / 6.0;
+            let length = chord.norm();
+            if length > 0.0 { (error.y * chord.x - error.x * chord.y).abs() / length } else { 0.0 }
+        };
+        // The variance of the difference is 1 + (2 * 16 + 2) / 36 of that of a place.
+        let own = MEDIAN_TO_DEVIATION * median((0..self.len()).map(off).collect()) / (35.0_f64 / 18.0).sqrt();
+        own.max(LEAST_NOISE * self.size()).max(SPACING_NOISE * self.spacing())
+    }
+
+    /// Unit normal of a side, by the chord over the sides next to it.
+    pub(super) fn normal(&self, side: usize) -> Vector2<f64> {
+        let chord = self.round(side, 2) - self.round(side, -1);
+        Vector2::new(-chord.y, chord.x).try_normalize(0.0).unwrap_or_else(Vector2::zeros)
+    }
+
+    pub(super) fn nearest(&self, p: &Point2<f64>) -> Foot {
+        let i = self.nearest_place(p);
+        let before = (i + self.len() - 1) % self.len();
+        let [first, second] = [before, i].map(|side| self.foot_on(side, p));
+        if first.distance < second.distance { first } else { second }
+    }
+
+    fn nearest_place(&self, p: &Point2<f64>) -> usize {
+        const LANES: usize = 8;
+        let least = vectorised(
+            #[inline(always)]
+            || {
+                let mut least = [f64::INFINITY; LANES];
+                for (x, y) in self.x.chunks(LANES).zip(self.y.chunks(LANES)) {
+                    for ((least, x), y) in least.iter_mut().zip(x).zip(y) {
+                        let square = (x - p.x) * (x - p.x) + (y - p.y) * (y - p.y);
+                        *least = if square < *least { square } else { *least };
+                    }
+                }
+                least.into_iter().fold(f64::INFINITY, f64::min)
+            },
+        );
+        let square = |i: &usize| (self.x[*i] - p.x) * (self.x[*i] - p.x) + (self.y[*i] - p.y) * (self.y[*i] - p.y);
+        (0..self.len()).find(|i| square(i) <= least).unwrap_or(0)
+    }
+
+    fn foot_on(&self, side: usize, p: &Point2<f64>) -> Foot {
+        let (start, along) = (self.point(side), self.round(side, 1) - self.point(side));
+        let share = along.dot(&(p - start)) / along.norm_squared();
+        let point = start + along * if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
+        Foot { side, point, distance: (p - point).norm() }
+    }
+
+    #[cfg(feature = "serde")]
+    pub(super) fn is_valid(&self) -> bool {
+        self.x.len() == self.y.len()
+            && (FEWEST_PLACES..=2 * MOST_PLACES).contains(&self.x.len())
+            && self.x.iter().chain(&self.y).all(|x| x.is_finite())
+    }
+}
+
+/// Median, the upper of two; 0 of none.
+pub(super) fn median(mut values: Vec<f64>) -> f64 {
+    let middle = values.len() / 2;
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::{RngExt as _, SeedableRng as _};
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::StandardNormal;
+
+    use super::*;
+
+    fn ellipse(count: usize, noise: f64) -> Outline {
+        let mut random = ChaCha8Rng::seed_from_u64(1);
+        let mut point = |i: usize| {
+            let t = std::f64::consts::TAU * i as f64 / count as f64;
+            let mut error = || noise * random.sample::<f64, _>(StandardNormal);
+            Point2::new(2.0 * t.cos() + error(), t.sin() + error())
+        };
+        Outline::closed((0..count).map(&mut point).collect()).expect("an ellipse")
+    }
+
+    #[test]
+    fn the_noise_of_places_is_that_of_points_over_the_root_of_how_many_each_has() {
+        for (count, points_each) in [(100, 1), (400, 4), (1200, 10)] {
+            let places = Places::of(&ellipse(count, 0.05)).expect("enough points");
+            assert_eq!(places.points_each, points_each);
+            let expected = 0.05 / (points_each as f64).sqrt();
+            assert!((places.noise() / expected - 1.0).abs() < 0.35, "{count}: {} of {expected}", places.noise());
+        }
+        assert!(Places::of(&ellipse(FEWEST_PLACES - 1, 0.0)).is_none(), "too few points");
+    }
+
+    #[test]
+    fn the_nearest_place_of_a_contour_is_nearest_of_all_sides() {
+        let places = Places::of(&ellipse(100, 0.0)).expect("enough points");
+        for p in [Point2::new(0.0, 0.0), Point2::new(3.0, 0.1), Point2::new(-1.0, 0.9), Point2::new(0.3, -2.0)] {
+            let foot = places.nearest(&p);
+            let least = (0..places.len()).map(|side| places.foot_on(side, &p).distance).fold(f64::INFINITY, f64::min);
+            assert!((foot.distance - least).abs() < 1e-12, "{p}");
+            assert!(((p - foot.point).norm() - foot.distance).abs() < 1e-12);
+        }
+    }
+}
