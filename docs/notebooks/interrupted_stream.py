@@ -1,8 +1,9 @@
 # %% [markdown]
 # # A stream that is interrupted and goes on
 #
-# A filter keeps the whole of what it knows in constant memory, and `to_bytes` writes it down. What is restored from the bytes goes on to the
-# last bit: in another process, on another machine with a processor of the same kind, on another day. This notebook interrupts a stream and compares.
+# A filter keeps all that it knows in constant memory, and `to_bytes` saves it. A filter restored from the bytes goes on with the same results
+# to the last bit: in another process, on another machine with a processor of the same kind, on another day. This notebook interrupts a
+# stream and compares the results with those of a stream without an interruption.
 
 # %%
 import pickle
@@ -40,8 +41,8 @@ expected = follow(straight, frames)
 print(straight.estimate["omega"])
 
 # %% [markdown]
-# Now the same with an interruption after 45 frames. The state goes to a file; a new process, which knows nothing else, takes the
-# rest of the frames and leaves its own state behind.
+# Now the same with an interruption after 45 frames. The state is saved to a file. A new process, which knows nothing else, takes the
+# rest of the frames and saves its own state.
 
 # %%
 HALT = 45
@@ -76,7 +77,7 @@ print("states at the end equal to the last bit:", (folder / "state").read_bytes(
 assert np.array_equal(resumed, expected, equal_nan=True) and (folder / "state").read_bytes() == straight.to_bytes()
 
 # %% [markdown]
-# A filter that began anew after the interruption would have to learn outline and motion once more. For comparison it is drawn too:
+# A filter that began anew after the interruption would have to learn the outline and the motion again. It is drawn too, for comparison:
 
 # %%
 anew = follow(ff.MotionFilter(), frames[HALT:])
@@ -95,8 +96,8 @@ plt.show()
 # %% [markdown]
 # ## Many objects, size and time
 #
-# A `Tracker` holds the filters of many objects. Pickling uses the same bytes, so that trackers go through queues, process pools and
-# the states of stream engines. The state does not grow with the number of frames.
+# A `Tracker` holds the filters of many objects. Pickling uses the same bytes, so you can send trackers through queues and process pools, and
+# keep them in the states of stream engines. The state does not grow with the number of frames.
 
 # %%
 tracker = ff.Tracker()
@@ -124,10 +125,10 @@ print(f"one filter: {len(state) / 1e3:.0f} kB, restored in {1e3 * restored:.1f} 
 assert max(sizes[60:]) < 1.2 * sizes[59]
 
 # %% [markdown]
-# ## What is no state
+# ## Bytes that are refused
 #
-# The bytes begin with the version of their format and hold a checksum. Whatever is not whole, or was written by another version, is
-# refused with the reason; nothing half restored goes on.
+# The bytes begin with the version of their format and have a checksum. Bytes that are damaged, or were written by another version, are
+# refused, and the error says why. A state is never restored in part.
 
 # %%
 for what, data in (

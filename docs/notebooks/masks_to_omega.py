@@ -1,7 +1,7 @@
 # %% [markdown]
 # # From masks to angular velocity
 #
-# A segmentation gives a mask for each frame. This notebook goes from masks to the angular velocity over time, with its standard
+# A segmentation gives a mask for each frame. This notebook finds from masks the angular velocity over time, with its standard
 # deviation, and compares both with the truth.
 
 # %%
@@ -11,8 +11,8 @@ import numpy as np
 import freeform_motion as ff
 
 # %% [markdown]
-# Masks are an array of shape (frames, height, width) with 0 for the ground. These are simulated: a glider that turns at 1 rad/s
-# and drifts, 240 x 320 pixels, 30 frames/s. A mask has no grey levels; its edge is a staircase.
+# Masks are an array of shape (frames, height, width) with 0 for the ground (the background). These are simulated: a glider that turns at
+# 1 rad/s and drifts, 240 x 320 pixels, 30 frames/s. A mask has no grey levels; its edge is a staircase.
 
 # %%
 OMEGA, FPS = 1.0, 30
@@ -27,8 +27,9 @@ for axes, frame in zip(panels, (0, 40, 80, 119), strict=True):
 plt.show()
 
 # %% [markdown]
-# `identify` gives one motion for each object, from all frames. `b` is the velocity at the origin of the image, in pixels per second.
-# It is large because the origin, the lower left corner, is far from the object. `velocity` is that of the object's middle.
+# `identify` gives one motion for each object, from all frames. `b1` and `b2` are the velocity at the origin of the image, in pixels per second:
+# the velocity that the object would have there if it reached that far. They are large because the origin, the lower left corner, is far from
+# the object. `result.velocity` is the velocity of the object's middle.
 
 # %%
 result = ff.identify(masks, fps=FPS)["1"]
@@ -38,9 +39,9 @@ print("middle:", result.velocity.velocity.round(2), "+-", result.velocity.std.ro
 print("warnings:", [warning.code for warning in result.warnings])
 
 # %% [markdown]
-# `track` gives pose and motion after each frame: what was known at that time. The band is two standard deviations wide to either
-# side; it narrows with the number of frames. What is known after one frame and after the next is nearly the same, so that one recording
-# is within two deviations for long, or outside for long.
+# `track` gives pose and motion after each frame: what was known at that time. The band shows two standard deviations to either
+# side. It narrows with the number of frames. What is known after one frame hardly differs from what is known after the next. So omega
+# stays within two deviations of the truth for many frames, or outside for many.
 
 # %%
 motion = ff.track(masks, fps=FPS)
@@ -63,9 +64,10 @@ assert np.abs(motion["omega"][10:] - OMEGA).max() < 0.005
 # %% [markdown]
 # ## Are the deviations right?
 #
-# One recording says little of that. Here are forty, each with another motion and another ragged edge: the edge of every
-# mask is moved by about a pixel, in and out, smoothly along the contour. If the deviations are right, the errors of omega at the end, each
-# divided by its deviation, are within two in about 95 %.
+# One recording says little about that. Here are forty, each with another motion and another ragged edge: the edge of every
+# mask is moved in and out by about a pixel, smoothly along the contour. If the deviations are right, the error of omega at the end is
+# smaller than two deviations in about 95 % of the recordings, and the root mean square of error over deviation is 1. It is smaller if the
+# deviations are wider than they need be.
 
 # %%
 from scipy import ndimage
@@ -99,13 +101,14 @@ axes.axhline(0.0, color="black", lw=0.8)
 axes.set(xlabel="true omega in rad/s", ylabel="error in 0.001 rad/s")
 plt.show()
 print(f"{inside:.0%} of the intervals of two deviations hold the truth; RMS error {1e3 * np.sqrt(np.mean(errors**2)):.2f}e-3 rad/s")
+print(f"RMS of error over deviation: {np.sqrt(np.mean((errors / deviations) ** 2)):.2f}")
 assert inside > 0.8
 
 # %% [markdown]
 # ## What outlines do not show
 #
-# The angular velocity of a disc cannot be seen. It is then NaN in arrays and None as a value, and a warning says so. The velocity
-# of its middle is known all the same. Here with the points of outlines instead of masks:
+# The angular velocity of a disc cannot be seen. It is NaN in arrays and None as a value, and a warning says so. The velocity
+# of the middle of the disc is known all the same. This example has the points of outlines instead of masks:
 
 # %%
 table = ff.outline_table(ff.simulate("circle", omega=1.0, b=(0.3, 0.0), seconds=2.0))
