@@ -74,6 +74,14 @@ impl CommonError {
         Some(())
     }
 
+    /// Takes the covariance of another in its place, of the same poses and now, where that is the larger one.
+    pub(super) fn renew(&mut self, now: &Self, pose: &CentredPose) {
+        let is_larger = self.covariance_in(pose).is_some_and(|before| now.covariance.trace() > before.trace());
+        if is_larger {
+            *self = Self { shift: self.shift, ..*now };
+        }
+    }
+
     /// Adds a displacement of the whole outline in the body frame, which later poses are measured against.
     pub(super) fn add_shift(&mut self, shift: &SVector<f64, MAX_PARAMETERS>) {
         self.shift += shift;
@@ -154,6 +162,19 @@ mod tests {
         let from = reference().about_origin(MotionModel::Rigid).expect("a pose").fixed_view::<3, 3>(0, 0).into_owned();
         let expected = from * common_error().covariance.fixed_view::<3, 3>(0, 0) * from.transpose();
         assert!((here.fixed_view::<3, 3>(0, 0) - expected).amax() < 1e-14);
+    }
+
+    #[test]
+    fn it_grows_as_the_outline_that_is_seen_becomes_another_and_never_shrinks() {
+        let [covariance, given_outline] = of_two_frames();
+        let shift = SVector::from_element(0.1);
+        for (times, kept) in [(0.5, true), (3.0, false)] {
+            let mut common = CommonError { shift, ..common_error() };
+            let now = [covariance, given_outline].map(|covariance| covariance * times);
+            common.renew(&CommonError::of_outline(MotionModel::Rigid, &now[0], &now[1], &reference()), &reference());
+            let expected = common_error().covariance * if kept { 1.0 } else { times };
+            assert!((common.covariance - expected).amax() < 1e-15 && common.shift == shift, "{times}");
+        }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 use std::borrow::Cow;
 
 use freeform_riccati::{MAX_PARAMETERS, MotionModel};
-use nalgebra::{Matrix3, Point2, SVector};
+use nalgebra::{Matrix3, Point2, SMatrix, SVector};
 
 use super::{
     arrival::Arrival,
@@ -78,11 +78,8 @@ impl<const N: usize> InteractingHypotheses<N> {
             return None;
         }
         let reference = CentredPose { pose: summary.pose, centroid };
-        let change = reference.about_centroid(model);
-        let (mean, mut covariance) = summary.about_centroid(&change, k);
         // Poses are followed as they are measured, against the outline as it is.
-        let of_poses = Summary { covariance: *given_outline, ..*summary };
-        let (_, measured) = of_poses.about_centroid::<N>(&change, k);
+        let [(mean, mut covariance), (_, measured)] = Self::about_centroid(model, (summary, given_outline), &reference);
         let common = CommonError::of_outline(model, &covariance, &measured, &reference);
         if common.moves_centroid_beyond(tuning::UNTOLD) {
             return None;
@@ -119,6 +116,25 @@ impl<const N: usize> InteractingHypotheses<N> {
             filter.add_turn_of_path(null, seconds);
         }
         Some(filter)
+    }
+
+    /// Mean and covariance about the centroid of what is believed, and of that if the outline is known.
+    fn about_centroid(
+        model: MotionModel,
+        (summary, given_outline): (&Summary, &StateMatrix),
+        reference: &CentredPose,
+    ) -> [(SVector<f64, N>, SMatrix<f64, N, N>); 2] {
+        let (change, k) = (reference.about_centroid(model), model.parameter_count());
+        let of_poses = Summary { covariance: *given_outline, ..*summary };
+        [summary, &of_poses].map(|summary| summary.about_centroid(&change, k))
+    }
+
+    /// Takes what poses have in common to be no less than what the outline adds to them now. Where parts of it come into view, while others are
+    /// hidden, they are learnt in poses that are measured against those before.
+    pub(crate) fn renew_common_error(&mut self, summary: &Summary, given_outline: &StateMatrix) {
+        let reference = CentredPose { pose: summary.pose, centroid: self.reference.centroid };
+        let [(_, covariance), (_, measured)] = Self::about_centroid(self.model, (summary, given_outline), &reference);
+        self.common.renew(&CommonError::of_outline(self.model, &covariance, &measured, &reference), &reference);
     }
 
     /// Lets the path of the centroid tell what the outline does not show of the rates, from a prior that is as wide as steps of so many seconds

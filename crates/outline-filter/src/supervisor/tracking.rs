@@ -131,6 +131,11 @@ pub(super) fn advance(
     let (outcome, apart) =
         outcome_with_changes(settings, (track, frame), history, (seconds, &gates), (turns, comparison));
     history.record(&outcome, seconds);
+    if outcome.is_accepted()
+        && let Some(dynamics) = history.dynamics.as_mut().filter(|dynamics| dynamics.leads())
+    {
+        track.renew_common_error(dynamics);
+    }
     if let Some(apart) = apart {
         history.record_apart(&apart);
     }

@@ -124,6 +124,16 @@ impl Track {
         DynamicsFilter::begin(belief.model, setting, (&summary, &given_outline), place, belief.memory.step)
     }
 
+    /// Hands on to hypotheses of dynamics what the outline, as it is known now, adds to the errors of poses.
+    pub(crate) fn renew_common_error(&self, dynamics: &mut DynamicsFilter) {
+        if let Some([mut summary, Summary { covariance: given_outline, .. }]) =
+            self.held_summaries(&self.null_directions())
+        {
+            self.add_kept_error(&mut summary.covariance, &summary.pose);
+            dynamics.renew_common_error(&summary, &given_outline);
+        }
+    }
+
     /// Covariance of the motion parameters in the order of the model, image units; `None` where it is beyond any number, or where the motion is known
     /// so little that rounding has left something that is no covariance.
     pub(crate) fn covariance_of(&self, summary: &Summary) -> Option<DMatrix<f64>> {
