@@ -7,7 +7,7 @@ use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::tracker::FrameRanges;
 use rayon::prelude::*;
 
-use super::side_by_side;
+use super::side_by_side::SideBySide;
 use crate::args::{FitArgs, FitFormat};
 use crate::awaited::Waiting;
 use crate::failure::{Failure, warn};
@@ -70,7 +70,7 @@ struct Fitted {
 fn fit_all(args: &FitArgs, input: Input, fitter: Fitter, sink: &mut Sink) -> Result<Fitted, Failure> {
     let progress = Progress::of_frames(input.frame_count(), sink.is_disturbed_by_progress());
     let is_wanted = |frame: u64| args.frame.is_none_or(|wanted| wanted == frame);
-    let mut waiting = Batch { input: input.name.clone(), fitter, items: side_by_side::Waiting::of(&input) };
+    let mut waiting = Batch { input: input.name.clone(), fitter, items: SideBySide::of(&input) };
     let mut fitted = Fitted::default();
     for item in input {
         progress.advance();
@@ -123,7 +123,7 @@ struct Batch {
     /// Name of the input, for messages.
     input: String,
     fitter: Fitter,
-    items: side_by_side::Waiting<Result<OutlineFrame, String>>,
+    items: SideBySide<Result<OutlineFrame, String>>,
 }
 
 impl Batch {

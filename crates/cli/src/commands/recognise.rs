@@ -2,7 +2,7 @@ use freeform_motion::outline_io::{OutlineFrame, read_shape};
 use freeform_motion::recognise::{EvidenceByObject, ObjectEvidence, RecogniseSettings, Recogniser};
 use rayon::prelude::*;
 
-use super::side_by_side;
+use super::side_by_side::SideBySide;
 use crate::args::{RecogniseArgs, RecogniseFormat};
 use crate::awaited::Waiting;
 use crate::failure::{Failure, warn};
@@ -58,7 +58,7 @@ struct Compared {
 /// Compares the outlines of an input with the known ones, as many side by side as need not be waited for.
 fn compare_all(input: Input, recogniser: &Recogniser, sink: &Sink) -> Compared {
     let progress = Progress::of_frames(input.frame_count(), sink.is_disturbed_by_progress());
-    let mut waiting = side_by_side::Waiting::of(&input);
+    let mut waiting = SideBySide::of(&input);
     let mut compared = Compared::default();
     for item in input {
         progress.advance();

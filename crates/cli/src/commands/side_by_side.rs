@@ -8,14 +8,14 @@ const OUTLINES_AT_ONCE: usize = 64;
 const POINTS_AT_ONCE: usize = 1 << 18;
 
 /// What waits until there is enough of it to be worked on side by side.
-pub(super) struct Waiting<T> {
+pub(super) struct SideBySide<T> {
     items: Vec<T>,
     /// Points of the outlines among them.
     points: usize,
     at_once: usize,
 }
 
-impl<T> Waiting<T> {
+impl<T> SideBySide<T> {
     /// Of an input, as many as need not be waited for.
     pub(super) fn of(input: &Input) -> Self {
         // A stream may stand still: what has come is not kept waiting.

@@ -32,6 +32,10 @@ pub(crate) struct Memory {
     pub(crate) step: f64,
     /// Seconds predicted over since the motion was last unknown.
     pub(crate) span: f64,
+    /// Of the span, seconds up to the last frame that was taken.
+    pub(crate) told: f64,
+    /// Of the span, seconds up to the first of them that has told something of the motion.
+    pub(crate) first: f64,
     /// Effective memory: seconds of the past that each parameter is known from, the span, or, where the motion changes, what of it is
     /// not forgotten.
     pub(crate) effective: ParameterVector,
@@ -88,6 +92,24 @@ impl Memory {
         self.step = seconds;
     }
 
+    /// Records that a frame has been taken.
+    pub(crate) fn take_frame(&mut self) {
+        if self.told <= 0.0 {
+            self.first = self.span;
+        }
+        self.told = self.span;
+    }
+
+    /// Whether no more than one step has been measured.
+    pub(crate) fn is_of_one_step(&self) -> bool {
+        self.told <= self.first
+    }
+
+    /// Steps predicted over, as long as the one measured, since the middle of that one, of which it says the mean motion.
+    pub(crate) fn steps_since_middle(&self) -> f64 {
+        if self.told > 0.0 { self.span / self.told - 0.5 } else { 0.5 }
+    }
+
     /// Effective memory of what takes part in all of k parameters.
     pub(crate) fn shortest(&self, k: usize) -> f64 {
         self.effective[..k].iter().copied().fold(f64::INFINITY, f64::min)
@@ -95,7 +117,7 @@ impl Memory {
 
     /// Forgets everything.
     pub(crate) fn clear(&mut self) {
-        self.span = 0.0;
+        (self.span, self.told, self.first) = (0.0, 0.0, 0.0);
         self.effective = [0.0; MAX_PARAMETERS];
     }
 }
@@ -105,9 +127,9 @@ impl Belief {
     /// Whether it is that of a map with so many cells, and all its numbers can be worked with.
     pub(crate) fn is_valid(&self, cells: usize) -> bool {
         let Arrowhead { k, dense, cells: information } = &self.information;
-        let Memory { step, span, effective } = self.memory;
+        let Memory { step, span, told, first, effective } = self.memory;
         let numbers = self.pose.iter().chain(&self.motion).chain(&self.offsets).chain(dense.iter().flatten());
-        let numbers = numbers.chain(&self.marginal).chain([&step, &span]);
+        let numbers = numbers.chain(&self.marginal).chain([&step, &span, &told, &first]);
         *k == self.model.parameter_count()
             && self.offsets.len() == cells
             && information.is_valid(cells, 2 * k)

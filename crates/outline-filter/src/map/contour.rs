@@ -79,7 +79,7 @@ impl Contour {
     }
 
     /// Smallest window that gives normals a direction with a deviation of no more than `normal_noise`, in rad, for noise `sigma`: as far as
-    /// a tenth of the contour allows where that is less than normals usually need.
+    /// a sixth of the contour allows where that is less than normals usually need.
     pub(super) fn half_window(&self, sigma: f64, normal_noise: f64) -> usize {
         let usual = self.half_window_for(sigma, tuning::NORMAL_NOISE);
         if normal_noise < tuning::NORMAL_NOISE {

@@ -4,7 +4,7 @@ use freeform_curve_fit::Outline;
 use super::{
     candidate::{Candidate, VerdictOf},
     motion_filter::{MotionFilter, Phase},
-    tracking::gate,
+    tracking::{gate, predict},
     turn_hypotheses::TurnHypotheses,
 };
 use crate::{
@@ -27,8 +27,9 @@ impl MotionFilter {
         let track = self.track.as_ref()?;
         if self.phase == Phase::Lost {
             let gate = Gate { largest_innovation: Some(LARGEST_INNOVATION), ..gate(&self.settings, track) };
-            let mut going_on = track.clone();
-            if !going_on.predict(seconds) {
+            // It is expected as before, by whichever dynamics led then: only a constant generator goes on as the track alone has it.
+            let (mut going_on, mut history) = (track.clone(), self.history.clone());
+            if !predict(&self.settings, &mut going_on, &mut history, seconds) {
                 return self.search(time, seconds, outline);
             }
             self.frame.load(outline, going_on.reference());
@@ -37,7 +38,9 @@ impl MotionFilter {
                 .rejected_at_a_glance(&mut self.frame, &gate)
                 .unwrap_or_else(|| going_on.update(&mut self.frame, &gate, Comparison::NotAsked));
             if outcome.is_accepted() {
+                history.record(&outcome, seconds);
                 self.replace(going_on, time, Phase::Tracking);
+                self.history = history;
                 return Some(self.look_elsewhere(outcome.after_rejected(), time, outline));
             }
             if self.track.as_ref().is_some_and(|track| track.noise().is_found_independent()) {
@@ -84,14 +87,14 @@ impl MotionFilter {
         if let (Some(found), Some(of_other)) = (found, &other.track) {
             let poses = [*track.body_pose(), *of_other.body_pose()];
             let likelihoods = track.compared(outline, &poses, &mut self.frame);
-            is_explained = likelihoods[0].is_worse_by(0.0, &likelihoods[1]);
+            // By its own points alone every frame is explained best in a pose beside that which all of them say.
+            let is_beside = of_other.displacement_from(&poses[0]) < BESIDE * track.noise().sigma;
+            is_explained = !is_beside && likelihoods[0].is_worse_by(0.0, &likelihoods[1]);
             let is_direction = |doubt: Doubt| matches!(doubt, Doubt::Direction { .. });
             let lies_near = track.turn_to(of_other.body_pose()).abs() < LEAP;
             let lies_further = is_direction(doubt) && lies_near && !found.doubt.is_some_and(is_direction);
             let is_better = lies_further && likelihoods[0].is_worse_by_fit(FURTHER_ALONG, &likelihoods[1])
                 || likelihoods[0].is_worse_by(ELSEWHERE, &likelihoods[1]);
-            // By its own points alone every frame is explained best in a pose beside that which all of them say.
-            let is_beside = of_other.displacement_from(&poses[0]) < BESIDE * track.noise().sigma;
             if is_better && !is_beside {
                 *self = other;
                 return found;

@@ -1,7 +1,7 @@
 //! What is stated of the motion, with how well it is known, or why nothing is.
 use freeform_estimate::{MotionEstimate, MotionState, PointVelocity};
 use freeform_riccati::MAX_PARAMETERS;
-use nalgebra::{DMatrix, Point2};
+use nalgebra::DMatrix;
 
 use super::{
     motion_filter::{Counts, MotionFilter, Phase},
@@ -58,7 +58,7 @@ impl MotionFilter {
         all.covariance += moments;
         let displacement = unmodelled.displacement * track.reference().radius;
         let ones = CentredDeviations::from_element(1.0);
-        if let Some(change) = self.possible_change(&own, &centroid) {
+        if let Some(change) = self.possible_change(track, &own) {
             all = all.widened(model, &centroid, &ones, [&none, &CentredDeviations::repeat(change)])?;
         }
         let edge_uncertainty = self.settings.edge_uncertainty;
@@ -85,13 +85,13 @@ impl MotionFilter {
         Some(Statement { random, all, family })
     }
 
-    /// By how much a motion that is known from one step alone, a mean over it, may be off at its end, as a deviation of every parameter about the
+    /// By how much a motion that is known from one step alone, a mean over it, may be off by now, as a deviation of every parameter about the
     /// centroid. None where it is said to be constant, or how it changes.
-    fn possible_change(&self, own: &Summary, centroid: &Point2<f64>) -> Option<f64> {
+    fn possible_change(&self, track: &Track, own: &Summary) -> Option<f64> {
         let may_change = matches!(self.settings.followed_dynamics(), Some(Dynamics::Auto | Dynamics::Accelerating));
-        let is_of_one_step = self.track.as_ref().is_some_and(Track::is_found_one_step_ago);
-        (may_change && is_of_one_step)
-            .then(|| 0.5 * tuning::CHANGE_IN_FIRST_STEP * own.speed(self.settings.model, centroid))
+        let steps = track.belief().memory.steps_since_middle();
+        let speed = || own.speed(self.settings.model, &track.centred_pose().centroid);
+        (may_change && track.is_found_one_step_ago()).then(|| steps * tuning::CHANGE_IN_A_STEP * speed())
     }
 
     /// What the outlines do that the motion model does not have, if that is beyond doubt: the model to try is another.

@@ -12,10 +12,9 @@ impl Track {
         memory.shortest(information.k) <= memory.step
     }
 
-    /// Whether one step has been made since the object was found where nothing said how it had moved.
+    /// Whether one step has been measured since the object was found where nothing said how it had moved.
     pub(crate) fn is_found_one_step_ago(&self) -> bool {
-        let Belief { memory, .. } = &self.belief;
-        memory.span <= memory.step
+        self.belief.memory.is_of_one_step()
     }
 
     /// Moves the predicted pose by what it was found to be off by, which the motion has made of it in so many seconds, up to now; by as much as the

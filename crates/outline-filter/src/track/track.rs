@@ -157,6 +157,7 @@ impl Track {
             self.frames += 1;
             self.look_for_unmodelled_motions(frame, (&proposal, hold.as_ref()), &measured, variance);
             commit(&proposal, frame, (&mut self.belief, &mut self.noise, &mut self.shape));
+            self.belief.memory.take_frame();
             doubt = self.doubt_of_agreement(measurement.agreement, weakest, frame.points.len());
             self.look_for_change_of_shape(frame);
             shift = self.common_shift(frame);

@@ -227,10 +227,10 @@ pub(crate) mod statement {
     /// How far below none the variance of a combination of parameters may be, in their variances: what rounding leaves where hardly anything is
     /// known.
     pub(crate) const ROUNDING_OF_CORRELATION: f64 = 1e-3;
-    /// Standard deviation of what a motion changes by in a step, as a share of how fast the outline moves, where nothing has shown yet that it is steady.
-    /// What falls, swings or slows down at 30 frames a second changes by a tenth to a third of its speed, machines by less: half of that, at the end
-    /// of the step, is what the mean over the step is off by.
-    pub(crate) const CHANGE_IN_FIRST_STEP: f64 = 0.2;
+    /// Standard deviation of what a motion changes by in a step, as a share of how fast the outline moves, where nothing has shown yet that it is
+    /// steady. What falls, swings or slows down changes by a tenth to a third of its speed at 30 frames a second, machines by less. It is that of
+    /// a step, however short: how fast frames come is chosen by how fast what they show changes.
+    pub(crate) const CHANGE_IN_A_STEP: f64 = 0.2;
     /// Standard deviation of a side of a mask, in pixels: that of rounding, 1 / sqrt(12), where the side lies along the rows or columns. Sides
     /// that lie across them are off by less.
     pub(crate) const ROUNDING: f64 = 0.289;

@@ -19,6 +19,7 @@ mod lost_objects;
 mod mask_rounding;
 mod moving_poses;
 mod near_symmetry;
+mod nearly_round;
 mod plane;
 mod point_deviations;
 mod projective_poses;
