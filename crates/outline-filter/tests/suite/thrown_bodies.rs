@@ -95,18 +95,22 @@ fn what_one_step_tells_of_a_thrown_body_is_within_its_deviations_and_told_as_wel
         (0..2).for_each(|frame| assert!(throw.step(&mut run, frame, &mut random)));
         if dynamics == Dynamics::Generator {
             let estimate = run.estimate().expect("an estimate");
-            assert!(estimate.parameters().all(|p| p.standard_deviation == p.random_deviation), "{estimate:?}");
+            for parameter in estimate.parameters() {
+                let [all, random] =
+                    [parameter.standard_deviation, parameter.random_deviation].map(|d| d.expect("known"));
+                assert!((all / random - 1.0).abs() < 1e-9, "{estimate:?}");
+            }
         } else if let Some(velocity) = run.velocity() {
             (stated, largest) = (stated + 1, largest.max(throw.off(&velocity, 1)));
         }
     }
-    assert!(stated > 6 && (1.0..4.0).contains(&largest), "{stated} {largest}");
+    assert!(stated > 6 && (0.5..4.0).contains(&largest), "{stated} {largest}");
 }
 
 #[test]
 fn a_picture_that_is_stored_twice_after_the_second_frame_leaves_its_motion_three_times_less_known() {
     let mut random = ChaCha8Rng::seed_from_u64(0);
-    let throw = Throw::new(0.02..0.05, &mut random);
+    let throw = Throw::new(0.001..0.002, &mut random);
     let mut run = filter(MotionModel::Rigid);
     assert!(throw.step(&mut run, 0, &mut random));
     let second = throw.outline(1, &mut random);
