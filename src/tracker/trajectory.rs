@@ -49,8 +49,8 @@ pub struct TrajectoryRow {
     pub accepted: bool,
     /// Why the frame was not used, where it was not.
     pub rejection: Option<FrameRejection>,
-    /// Counted up from 0 where the object was given up and begun anew, and where a frame has shown its turn for the first time: nobody knows how far
-    /// the object had turned between poses of different segments.
+    /// Counted up from 0 where the object was given up and begun anew, where a frame has shown its turn for the first time, and where an edge was
+    /// found not to be of the object: nobody knows how far the object had turned between poses of different segments.
     pub segment: usize,
     /// The state known then, at a time up to that of the frame.
     state: Option<MotionState>,

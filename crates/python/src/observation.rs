@@ -108,8 +108,8 @@ impl PyObservation {
         self.inner.innovation
     }
 
-    /// Counted up where the object was given up and begun anew, and where a frame has shown its turn for the first time: nobody knows how far the
-    /// object had turned between poses of different segments.
+    /// Counted up where the object was given up and begun anew, where a frame has shown its turn for the first time, and where an edge was found not
+    /// to be of the object: nobody knows how far the object had turned between poses of different segments.
     #[getter]
     fn segment(&self) -> usize {
         self.inner.segment

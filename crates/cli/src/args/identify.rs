@@ -76,8 +76,8 @@ pub(crate) struct IdentifyArgs {
     /// empty. All fields are empty if the motion is not known: in the first frame, in a frame where a lost object is found again,
     /// while it is lost, and in a frame that is not an outline. The angle and the matrix are also empty while two turns explain
     /// the outlines. In a rejected frame the fields are the prediction. The column segment is a number that is counted up from 0
-    /// where the object was given up and begun anew, and where a frame shows its turn for the first time: the turn between poses of
-    /// different segments is not known. v1 and v2 are the velocity of the middle of the object. The column reason says why a frame was not
+    /// where the object was given up and begun anew, where a frame shows its turn for the first time, and where an edge was found
+    /// not to be of the object: the turn between poses of different segments is not known. v1 and v2 are the velocity of the middle of the object. The column reason says why a frame was not
     /// accepted, unstated which values are empty and why, as in --trace. Not available with the adaptive method.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) trajectory: Option<PathBuf>,

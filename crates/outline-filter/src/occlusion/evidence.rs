@@ -7,8 +7,8 @@ use super::{
     registration::{Moved, registered},
 };
 use crate::tuning::occlusion::{
-    AGREES, FEWEST_STRAIGHT, FITS_OF_LINE, GAIN_OF_PART, LEAST_GAIN, MOST_OF_LINE, MOST_SCATTER, MOST_TRIED,
-    MOVED_SHARE, OFF, PART_DISAGREES, REST_AGREES, SHORTEST_SHARE,
+    AGREES, FEWEST_STRAIGHT, FITS_OF_LINE, GAIN_OF_PART, LEAST_GAIN, LEAST_REST, MOST_OF_LINE, MOST_SCATTER,
+    MOST_TRIED, MOVED_SHARE, OFF, PART_DISAGREES, REST_AGREES, SHORTEST_SHARE,
 };
 
 /// A straight part of a contour that has stayed where it was in an earlier frame.
@@ -53,9 +53,43 @@ impl<'a> Pair<'a> {
         moved as f64 >= MOVED_SHARE * self.now.len() as f64
     }
 
-    /// The longest straight parts that have stayed. None where what has moved is one straight line: that may be an edge which moves in front of an
+    /// Which places of both contours lie along lines, of an edge each: where it was seen now, and in the earlier frame.
+    fn along(&self, lines: &[[Line; 2]]) -> [Vec<bool>; 2] {
+        let is_near =
+            |p: &Point2<f64>, of: usize| lines.iter().any(|lines| lines[of].distance(p).abs() < AGREES * self.noise);
+        [self.now.iter().map(|p| is_near(&p, 0)).collect(), self.before.iter().map(|p| is_near(&p, 1)).collect()]
+    }
+
+    /// The straight parts that have stayed and are not of the object, each judged without the edges that are `known`. Two that hide each other, as both
+    /// stay where the rest moves, are judged without both; only where that rest is most of the contour, as it is not where something moves in front
+    /// of an object at rest.
+    pub(super) fn shown(&self, parts: &[Stayed], known: &[[Line; 2]]) -> Vec<Stayed> {
+        let is_shown = |part: &&Stayed| self.is_not_of_object(part, &self.left_out(&[part], known));
+        let shown: Vec<_> = parts.iter().filter(is_shown).cloned().collect();
+        let [first, second] = parts else { return shown };
+        if !shown.is_empty() {
+            return shown;
+        }
+        let left_out = self.left_out(&[first, second], known);
+        let rest = left_out[0].iter().filter(|is_out| !**is_out).count();
+        if (rest as f64) < LEAST_REST * self.now.len() as f64 {
+            return Vec::new();
+        }
+        let are_shown = parts.iter().all(|part| self.is_not_of_object(part, &left_out));
+        if are_shown { parts.to_vec() } else { Vec::new() }
+    }
+
+    /// Which places of both contours lie along parts that are judged, or along known edges.
+    fn left_out(&self, parts: &[&Stayed], known: &[[Line; 2]]) -> [Vec<bool>; 2] {
+        let lines: Vec<_> = parts.iter().map(|part| [part.line; 2]).chain(known.iter().copied()).collect();
+        let [mut now, before] = self.along(&lines);
+        parts.iter().flat_map(|part| &part.places).for_each(|i| now[*i] = true);
+        [now, before]
+    }
+
+    /// The longest straight parts that have stayed, so many more as edges are known. None where what has moved is one straight line: that may be an edge which moves in front of an
     /// object at rest, as well as a side of an object that comes out from behind an edge at rest.
-    pub(super) fn straight_parts(&self) -> Vec<Stayed> {
+    pub(super) fn straight_parts(&self, known: usize) -> Vec<Stayed> {
         if self.moved_is_straight() {
             return Vec::new();
         }
@@ -67,7 +101,7 @@ impl<'a> Pair<'a> {
         };
         let mut parts: Vec<_> = self.runs_that_stayed().into_iter().filter_map(straight).collect();
         parts.sort_by_key(|part| std::cmp::Reverse(part.places.len()));
-        parts.truncate(MOST_TRIED);
+        parts.truncate(MOST_TRIED + known);
         parts
     }
 
@@ -99,13 +133,10 @@ impl<'a> Pair<'a> {
 
     /// Whether a part that has stayed is not of the object. One rigid motion explains the rest of the contour. It takes the part off the earlier
     /// contour, so that it is no other side of the object that has come there; and no rigid motion of all explains as much.
-    pub(super) fn is_not_of_object(&self, part: &Stayed) -> bool {
+    fn is_not_of_object(&self, part: &Stayed, [out_now, out_before]: &[Vec<bool>; 2]) -> bool {
         let Self { now, before, noise, .. } = *self;
-        let is_near = |p: &Point2<f64>| part.line.distance(p).abs() < AGREES * noise;
-        let mut is_rest: Vec<_> = now.iter().map(|p| !is_near(&p)).collect();
-        part.places.iter().for_each(|i| is_rest[*i] = false);
-        let near: Vec<_> = before.iter().map(|p| is_near(&p)).collect();
-        let of_edge: Vec<_> = (0..near.len()).map(|i| near[i] && near[(i + 1) % near.len()]).collect();
+        let is_rest: Vec<_> = out_now.iter().map(|is_out| !is_out).collect();
+        let of_edge: Vec<_> = (0..before.len()).map(|i| out_before[i] && out_before[(i + 1) % before.len()]).collect();
         let Some(rest) = registered((now, &is_rest), (before, &of_edge), noise, Moved::default()) else { return false };
         let of_rest = || (0..now.len()).filter(|i| is_rest[*i]);
         if rest.scale > MOST_SCATTER * noise || rest.agreement(of_rest()) < REST_AGREES {

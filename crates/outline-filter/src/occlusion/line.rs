@@ -3,7 +3,7 @@ use nalgebra::{Point2, Vector2};
 
 #[cfg(feature = "serde")]
 use crate::tuning::map::UNIT_NORMAL;
-use crate::tuning::occlusion::{SEED, STRAIGHT, WITHIN};
+use crate::tuning::occlusion::{FITS_OF_PART, SEED, SEED_OVERLAP, SEED_STEP, STRAIGHT, WITHIN};
 
 /// A straight line.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,12 +75,12 @@ pub(super) fn longest_straight(
     while start + fewest <= points.len() {
         let Some((seed, scatter)) = Line::through(points[start..start + fewest].iter().copied()) else { break };
         if scatter >= SEED * noise {
-            start += (fewest / 4).max(1);
+            start += (fewest / SEED_STEP).max(1);
             continue;
         }
         let (range, line, scatter) = grown(points, (start..start + fewest, seed), noise);
         let is_longer = best.as_ref().is_none_or(|(other, _)| range.len() > other.len());
-        start = (range.end.saturating_sub(fewest / 2)).max(start + 1);
+        start = (range.end.saturating_sub(fewest / SEED_OVERLAP)).max(start + 1);
         if scatter < STRAIGHT * noise && is_longer {
             best = Some((range, line));
         }
@@ -94,9 +94,8 @@ fn grown(
     (mut range, mut line): (std::ops::Range<usize>, Line),
     noise: f64,
 ) -> (std::ops::Range<usize>, Line, f64) {
-    const ROUNDS: usize = 8;
     let mut scatter = 0.0;
-    for _ in 0..ROUNDS {
+    for _ in 0..FITS_OF_PART {
         let lies = |i: usize| points.get(i).is_some_and(|p| line.distance(p).abs() < WITHIN * noise);
         let (mut low, mut high) = (range.start, range.end);
         while high < points.len() && (lies(high) || lies(high + 1)) {

@@ -30,6 +30,10 @@ pub(super) struct Foot {
 }
 
 impl Places {
+    /// How many points each may be the mean of.
+    #[cfg(feature = "serde")]
+    pub(super) const COUNTS: std::ops::RangeInclusive<usize> = 1..=u16::MAX as usize;
+
     /// Of the boundary of an outline; `None` of one that is not closed, or has few points.
     pub(super) fn of(outline: &Outline) -> Option<Self> {
         let points = outline.pieces().next().filter(|piece| piece.closed)?.points;
@@ -135,6 +139,7 @@ impl Places {
         self.x.len() == self.y.len()
             && (FEWEST_PLACES..=2 * MOST_PLACES).contains(&self.x.len())
             && self.x.iter().chain(&self.y).all(|x| x.is_finite())
+            && Self::COUNTS.contains(&self.points_each)
     }
 }
 

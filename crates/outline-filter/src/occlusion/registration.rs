@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Point2, Rotation2, Vector2, Vector3};
 use super::places::{Places, median};
 use crate::tuning::{
     measurement::MEDIAN_TO_DEVIATION,
-    occlusion::{AGREES, FEWEST_REGISTERED, REGISTRATION_SETTLED, REGISTRATION_STEPS},
+    occlusion::{AGREES, FEWEST_REGISTERED, REGISTRATION_PRIOR, REGISTRATION_SETTLED, REGISTRATION_STEPS},
     registration::TUKEY,
 };
 
@@ -78,7 +78,7 @@ pub(super) fn registered(
             return None;
         }
         scale = noise.max(MEDIAN_TO_DEVIATION * median(met.iter().map(|(_, foot)| foot.distance).collect()));
-        information = Matrix3::identity() * (1e-9 * met.len() as f64);
+        information = Matrix3::identity() * (REGISTRATION_PRIOR * met.len() as f64);
         let mut right = Vector3::zeros();
         for (p, foot) in &met {
             let u = foot.distance / (TUKEY * scale);

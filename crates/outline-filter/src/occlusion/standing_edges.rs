@@ -7,13 +7,14 @@ use nalgebra::Point2;
 use super::{
     cut::without,
     evidence::{Pair, Stayed},
+    line::Line,
     places::{Places, median},
-    sighting::{Path, Sighting},
+    sighting::{Path, Sighting, extent},
 };
 use crate::tuning::map::FEWEST_POINTS;
 use crate::tuning::occlusion::{
-    AGREES, ATTENTIVE, FARTHEST, FRAMES_PER_LOOK, FURTHER, LONGEST_PAIR, LONGEST_PAUSE, LONGEST_WAIT, LOOKS_PER_PART,
-    MOST_EDGES, MOST_KEPT, MOVED, NOISES, PAIRS,
+    AGREES, ATTENTIVE, FARTHEST, FEWEST_ACROSS, FRAMES_PER_LOOK, FURTHER, GOES_ON, LONGEST_PAIR, LONGEST_PAUSE,
+    LONGEST_WAIT, LOOKS_PER_PART, MOST_EDGES, MOST_KEPT, MOST_WAITS, MOVED, NOISES, PAIRS, WIDTHS_OF_MAP,
 };
 
 /// A straight edge that cuts the object off in the picture and is not of it.
@@ -36,6 +37,8 @@ struct Edge {
     /// The last pairs that have shown it.
     sightings: Vec<Sighting>,
     path: Path,
+    /// Pairs since the last of those in which the contour went on across it.
+    crossed: usize,
 }
 
 impl Edge {
@@ -44,17 +47,32 @@ impl Edge {
         AGREES * self.sightings.iter().map(Sighting::noise_of_points).fold(0.0, f64::max)
     }
 
+    /// How far along a line that is its own what has been seen of it reaches.
+    fn reach(&self, line: &Line) -> [f64; 2] {
+        extent([self.shown.from, self.shown.to].iter().map(|p| line.place(p)))
+    }
+
+    /// Whether a contour goes on across it, where it was seen: then nothing is hidden there.
+    fn is_crossed_by(&self, places: &Places, noise: f64, time: f64) -> bool {
+        let line = self.path.line_at(time);
+        let [low, high] = self.reach(&line);
+        let within = |p: &Point2<f64>| (low..=high).contains(&line.place(p));
+        let distances = || places.iter().filter(within).map(|p| line.distance(&p));
+        let off = AGREES * noise;
+        distances().filter(|d| *d > off).count().min(distances().filter(|d| *d < -off).count()) >= FEWEST_ACROSS
+    }
+
     /// Follows the line where another pair shows it.
     fn follow(&mut self, seen: Sighting) {
         push_last(&mut self.sightings, seen, MOST_KEPT);
         if let Some(path) = Path::of(&self.sightings) {
             self.path = path;
         }
+        self.crossed = 0;
         if let Some(seen) = self.sightings.last() {
-            let line = self.path.line_in(seen.frame);
-            let seen_ends = seen.reach.map(|place| seen.line.at(place));
-            let places = [self.shown.from, self.shown.to].into_iter().chain(seen_ends).map(|p| line.place(&p));
-            let [low, high] = extent(places);
+            let line = self.path.line_at(seen.time);
+            let seen_ends = seen.reach.map(|place| line.place(&seen.line.at(place)));
+            let [low, high] = extent(self.reach(&line).into_iter().chain(seen_ends));
             (self.shown.from, self.shown.to) = (line.at(low), line.at(high));
         }
     }
@@ -66,6 +84,8 @@ impl Edge {
 struct Key {
     places: Places,
     frame: usize,
+    /// s.
+    time: f64,
     /// By how far a contour had moved when it was compared last.
     compared_at: f64,
     /// Work done on pairs with it, in looks.
@@ -80,7 +100,11 @@ struct Key {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct StandingEdges {
     frame: usize,
+    /// Of the last frame, s.
+    time: f64,
     next_look: usize,
+    /// Pairs that have told all that they can.
+    pairs: usize,
     looks_in_vain: usize,
     noises: Vec<f64>,
     key: Option<Key>,
@@ -98,8 +122,9 @@ impl StandingEdges {
     /// long, and the points of the frames before have `all_agreed` with the object, nothing lies in front of it that would be worth a look.
     pub(crate) fn look(&mut self, outline: &Outline, time: f64, all_agreed: bool) -> bool {
         self.frame += 1;
-        let is_idle = self.key.is_none() && self.looks_in_vain >= ATTENTIVE && all_agreed;
-        if self.frame < self.next_look || self.edges.len() >= MOST_EDGES || is_idle {
+        self.time = time;
+        let is_idle = self.key.is_none() && self.looks_in_vain >= ATTENTIVE && all_agreed && self.edges.is_empty();
+        if self.frame < self.next_look || is_idle {
             return false;
         }
         let Some(places) = Places::of(outline) else { return false };
@@ -117,7 +142,7 @@ impl StandingEdges {
         let needed = (FURTHER * key.compared_at).max(MOVED * noise);
         if !pair.has_moved() || displacement < needed {
             // By when it has moved by as much if it goes on like this.
-            let wait = elapsed as f64 * (needed / displacement - 1.0).clamp(0.0, 2.0);
+            let wait = elapsed as f64 * (needed / displacement - 1.0).clamp(0.0, MOST_WAITS);
             self.next_look = self.frame + (wait as usize).clamp(1, LONGEST_WAIT);
             if elapsed > LONGEST_PAIR {
                 self.begin_pair(places);
@@ -126,26 +151,45 @@ impl StandingEdges {
         }
         key.compared_at = displacement;
         self.next_look = self.frame + 1;
-        let parts = pair.straight_parts();
+        let parts = pair.straight_parts(self.edges.len());
         let is_done = parts.is_empty() || displacement > FARTHEST * places.size();
         let work = LOOKS_PER_PART * parts.len();
         key.looks += work;
         self.looks_in_vain += work;
-        let shown = parts.into_iter().find(|part| pair.is_not_of_object(part));
-        let is_new = shown.as_ref().is_some_and(|part| self.see(part, (&places, noise), time));
-        if shown.is_some() || is_done {
-            self.end_pair(places, shown.is_some());
+        let known: Vec<_> = self.edges.iter().map(|edge| [time, key.time].map(|t| edge.path.line_at(t))).collect();
+        let shown = pair.shown(&parts, &known);
+        let mut is_new = false;
+        for (i, part) in shown.iter().enumerate() {
+            // Two parts of one line say no more than the longer one: a pair counts once.
+            if shown[..i].iter().any(|longer| self.sighting(part, (&places, noise)).is_of(&longer.line)) {
+                continue;
+            }
+            is_new |= self.see(part, (&places, noise));
+        }
+        if is_done || !shown.is_empty() {
+            self.drop_crossed(&places, noise);
+            self.end_pair(places, !shown.is_empty());
         }
         is_new
     }
 
+    /// Drops edges that the contour has gone on across in several pairs since they were seen last: what was there has left, or never was.
+    fn drop_crossed(&mut self, places: &Places, noise: f64) {
+        let time = self.time;
+        self.edges.retain_mut(|edge| {
+            edge.crossed += usize::from(edge.is_crossed_by(places, noise, time));
+            edge.crossed < PAIRS
+        });
+    }
+
     fn begin_pair(&mut self, places: Places) {
-        self.key = Some(Key { places, frame: self.frame, compared_at: 0.0, looks: 0 });
+        self.key = Some(Key { places, frame: self.frame, time: self.time, compared_at: 0.0, looks: 0 });
         self.next_look = self.frame + 1;
     }
 
     /// After a pair that has told all that it can: the next one begins with this contour, or later where nothing has been seen for long.
     fn end_pair(&mut self, places: Places, has_shown: bool) {
+        self.pairs += 1;
         if has_shown {
             self.looks_in_vain = 0;
         }
@@ -158,29 +202,45 @@ impl StandingEdges {
         }
     }
 
-    /// Takes note of a straight part that is not of the object; whether it has been seen often enough, and was not known.
-    fn see(&mut self, part: &Stayed, (places, noise): (&Places, f64), time: f64) -> bool {
+    fn sighting(&self, part: &Stayed, (places, noise): (&Places, f64)) -> Sighting {
         let points = part.points(places);
         let reach = extent(points.iter().map(|p| part.line.place(p)));
-        let seen = Sighting { frame: self.frame, line: part.line, reach, noise, points_each: places.points_each };
-        if let Some(edge) = self.edges.iter_mut().find(|edge| seen.is_of(&edge.path.line_in(seen.frame))) {
+        let (time, pair, points_each) = (self.time, self.pairs, places.points_each);
+        Sighting { time, pair, line: part.line, reach, noise, points_each }
+    }
+
+    /// Takes note of a straight part that is not of the object; whether it has been seen often enough, and was not known.
+    fn see(&mut self, part: &Stayed, (places, noise): (&Places, f64)) -> bool {
+        let seen = self.sighting(part, (places, noise));
+        let (time, pair) = (seen.time, seen.pair);
+        if let Some(edge) = self.edges.iter_mut().find(|edge| seen.is_of(&edge.path.line_at(time))) {
             edge.follow(seen);
             return false;
         }
+        self.sightings.retain(|earlier| earlier.pair + MOST_KEPT > pair);
         push_last(&mut self.sightings, seen, MOST_KEPT);
-        let Some(edge) = confirmed(&self.sightings, time) else { return false };
-        self.sightings.clear();
+        let Some(edge) = confirmed(&self.sightings).filter(|_| self.edges.len() < MOST_EDGES) else { return false };
+        self.sightings.retain(|seen| !seen.is_of(&edge.path.line_at(seen.time)));
         self.edges.push(edge);
         true
     }
 
-    /// An outline without the points along edges; `None` where too little is left of it to begin a map with.
+    /// An outline without the points along edges, as far as these have been seen and somewhat further; `None` where too little is left of it to begin a
+    /// map with.
     pub(crate) fn left_of<'a>(&self, outline: &'a Outline) -> Option<Cow<'a, Outline>> {
         if self.edges.is_empty() {
             return Some(Cow::Borrowed(outline));
         }
-        let lines: Vec<_> = self.edges.iter().map(|edge| (edge.path.line_in(self.frame), edge.width())).collect();
-        let on_edge = |p: &Point2<f64>| lines.iter().any(|(line, width)| line.distance(p).abs() < *width);
+        let strip = |edge: &Edge| {
+            let line = edge.path.line_at(self.time);
+            let [low, high] = edge.reach(&line);
+            let further = GOES_ON * (high - low);
+            (line, edge.width(), low - further..=high + further)
+        };
+        let strips: Vec<_> = self.edges.iter().map(strip).collect();
+        let on_edge = |p: &Point2<f64>| {
+            strips.iter().any(|(line, width, reach)| line.distance(p).abs() < *width && reach.contains(&line.place(p)))
+        };
         let sightings = self.edges.iter().flat_map(|edge| &edge.sightings);
         let beside = sightings.map(|seen| seen.points_each).max().unwrap_or(0);
         match without(outline, on_edge, beside) {
@@ -189,34 +249,50 @@ impl StandingEdges {
         }
     }
 
-    /// Whether an outline, of an object with this centre, ends at the edge that was found last: more of it lies along the edge than beyond it.
-    pub(crate) fn end(&self, outline: impl Iterator<Item = Point2<f64>>, centre: &Point2<f64>) -> bool {
-        let Some(edge) = self.edges.last() else { return false };
-        let (line, width) = (edge.path.line_in(self.frame), 2.0 * edge.width());
-        let side = line.distance(centre).signum();
-        let (mut along, mut beyond) = (0, 0);
-        for p in outline {
-            let distance = side * line.distance(&p);
-            along += usize::from(distance.abs() <= width);
-            beyond += usize::from(distance < -width);
-        }
-        along >= beyond
+    /// Whether an outline, of an object with this centre, ends at an edge that was found in the last frame: more of it lies along the edge than beyond it.
+    pub(crate) fn cuts_off(&self, outline: impl Iterator<Item = Point2<f64>>, centre: &Point2<f64>) -> bool {
+        let outline: Vec<_> = outline.collect();
+        self.edges.iter().filter(|edge| edge.shown.since == self.time).any(|edge| {
+            let (line, width) = (edge.path.line_at(self.time), WIDTHS_OF_MAP * edge.width());
+            let side = line.distance(centre).signum();
+            let (mut along, mut beyond) = (0, 0);
+            for p in &outline {
+                let distance = side * line.distance(p);
+                along += usize::from(distance.abs() <= width);
+                beyond += usize::from(distance < -width);
+            }
+            along > beyond
+        })
     }
 
     #[cfg(feature = "serde")]
     pub(crate) fn is_valid(&self, most_counted: usize) -> bool {
         let is_key = |key: &Key| {
-            key.places.is_valid() && key.frame <= self.frame && key.looks < most_counted && key.compared_at >= 0.0
+            key.places.is_valid()
+                && key.frame <= self.frame
+                && key.looks < most_counted
+                && [key.time, key.compared_at].iter().all(|x| x.is_finite())
+                && key.compared_at >= 0.0
         };
-        let are_sightings =
-            |all: &[Sighting]| all.len() <= MOST_KEPT && all.iter().all(|seen| seen.is_valid(self.frame));
-        [self.frame, self.next_look, self.looks_in_vain].iter().all(|count| *count < most_counted)
+        let are_sightings = |all: &[Sighting]| {
+            all.len() <= MOST_KEPT && all.iter().all(|seen| seen.is_valid() && seen.pair <= self.pairs)
+        };
+        let is_edge = |edge: &Edge| {
+            let StandingEdge { from, to, since } = edge.shown;
+            [from.x, from.y, to.x, to.y, since].iter().all(|x| x.is_finite())
+                && !edge.sightings.is_empty()
+                && are_sightings(&edge.sightings)
+                && edge.path.is_valid()
+                && edge.crossed < PAIRS
+        };
+        [self.frame, self.next_look, self.looks_in_vain, self.pairs].iter().all(|count| *count < most_counted)
+            && self.time.is_finite()
             && self.noises.len() <= NOISES
-            && self.noises.iter().all(|noise| noise.is_finite())
+            && self.noises.iter().all(|noise| noise.is_finite() && *noise >= 0.0)
             && self.key.as_ref().is_none_or(is_key)
             && are_sightings(&self.sightings)
             && self.edges.len() <= MOST_EDGES
-            && self.edges.iter().all(|edge| are_sightings(&edge.sightings) && edge.path.is_valid())
+            && self.edges.iter().all(is_edge)
     }
 }
 
@@ -228,22 +304,65 @@ fn push_last<T>(list: &mut Vec<T>, value: T, most: usize) {
     list.push(value);
 }
 
-/// The least and the largest of some values.
-fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
-}
-
 /// The edge that the last of some pairs shows, if enough before it show the same line, at rest or moving at a constant velocity.
-fn confirmed(sightings: &[Sighting], time: f64) -> Option<Edge> {
+fn confirmed(sightings: &[Sighting]) -> Option<Edge> {
     let last = sightings.last()?;
     let along: Vec<_> = sightings.iter().filter(|seen| seen.is_along(&last.line)).collect();
     let standing = along.iter().filter(|seen| seen.is_of(&last.line)).map(|seen| (*seen).clone()).collect();
     let latest = along[along.len().saturating_sub(PAIRS)..].iter().map(|seen| (*seen).clone()).collect();
     let of = |sightings: Vec<Sighting>| {
         let path = Path::of(&sightings).filter(|_| sightings.len() >= PAIRS)?;
-        let line = path.line_in(last.frame);
+        let line = path.line_at(last.time);
         let [from, to] = extent(last.reach.iter().map(|place| line.place(&last.line.at(*place)))).map(|x| line.at(x));
-        Some(Edge { shown: StandingEdge { from, to, since: time }, sightings, path })
+        Some(Edge { shown: StandingEdge { from, to, since: last.time }, sightings, path, crossed: 0 })
     };
     of(standing).or_else(|| of(latest))
+}
+
+#[cfg(all(test, feature = "serde"))]
+mod tests {
+    use nalgebra::Vector2;
+
+    use super::*;
+
+    /// What is known after a disc has been looked at, with an edge.
+    fn with_edge() -> StandingEdges {
+        let point = |i: i32| Point2::new((0.06 * f64::from(i)).cos(), (0.06 * f64::from(i)).sin());
+        let disc = Outline::closed((0..104).map(point).collect()).expect("a disc");
+        let mut edges = StandingEdges::default();
+        edges.look(&disc, 0.5, false);
+        let line = Line { through: Point2::new(0.8, 0.0), along: Vector2::y() };
+        let seen = |time| Sighting { time, pair: 0, line, reach: [-0.4, 0.5], noise: 0.01, points_each: 1 };
+        edges.sightings = [0.1, 0.2, 0.3].map(seen).to_vec();
+        edges.edges.push(confirmed(&edges.sightings).expect("three of one line"));
+        edges
+    }
+
+    #[test]
+    fn damaged_edges_are_not_valid() {
+        assert!(with_edge().is_valid(1000));
+        let damages: [(&str, fn(&mut StandingEdges)); 16] = [
+            ("noise without end", |e| e.sightings[0].noise = f64::INFINITY),
+            ("a reach that is no number", |e| e.sightings[0].reach[1] = f64::NAN),
+            ("a reach the wrong way round", |e| e.sightings[0].reach = [0.5, -0.4]),
+            ("no points", |e| e.sightings[0].points_each = 0),
+            ("a pair to come", |e| e.sightings[0].pair = 1),
+            ("no sightings", |e| e.edges[0].sightings.clear()),
+            ("a damaged sighting", |e| e.edges[0].sightings[2].time = f64::NAN),
+            ("no beginning", |e| e.edges[0].shown.from.x = f64::NAN),
+            ("no end", |e| e.edges[0].shown.to.y = f64::INFINITY),
+            ("no time", |e| e.edges[0].shown.since = f64::NAN),
+            ("crossed too often", |e| e.edges[0].crossed = PAIRS),
+            ("no time of the contour", |e| e.key.as_mut().expect("a contour").time = f64::NAN),
+            ("compared without end", |e| e.key.as_mut().expect("a contour").compared_at = f64::INFINITY),
+            ("no points of places", |e| e.key.as_mut().expect("a contour").places.points_each = 0),
+            ("negative noise", |e| e.noises = vec![-1.0]),
+            ("no time of the frame", |e| e.time = f64::NAN),
+        ];
+        for (name, damage) in damages {
+            let mut edges = with_edge();
+            damage(&mut edges);
+            assert!(!edges.is_valid(1000), "{name}");
+        }
+    }
 }

@@ -3,7 +3,11 @@ use freeform_curve_fit::Outline;
 use freeform_riccati::MotionModel;
 
 use super::motion_filter::{FilterStep, MotionFilter, Phase};
-use crate::{occlusion::StandingEdge, track::Track, update::Rejection};
+use crate::{
+    occlusion::StandingEdge,
+    track::Track,
+    update::{FrameMeasurement, Rejection},
+};
 
 impl MotionFilter {
     /// Straight edges of the outline that are not of the object, in the order in which they were found: they stood still, or moved slowly, while one
@@ -22,28 +26,55 @@ impl MotionFilter {
         self.counts.restarts + self.counts.begun_with_turn + self.counts.begun_without_edge
     }
 
-    pub(super) fn looks_for_edges(&self) -> bool {
-        self.settings.model == MotionModel::Rigid
+    /// Looks at the outline of a frame at a time in seconds; whether it shows an edge that was not known.
+    pub(super) fn look_for_edges(&mut self, outline: &Outline, seconds: f64) -> bool {
+        let all_agrees = self.all_agrees();
+        self.settings.model == MotionModel::Rigid && self.edges.look(outline, seconds, all_agrees)
     }
 
     /// Whether the object is tracked, the last frame was taken, and the points of the frames agree with the outline.
-    pub(super) fn all_agrees(&self) -> bool {
+    fn all_agrees(&self) -> bool {
         let is_taken = self.phase == Phase::Tracking && self.counts.rejected_in_a_row == 0;
         is_taken && self.track.as_ref().is_some_and(Track::usually_agrees)
     }
 
-    /// Begins anew with a frame whose points along an edge that was just found are left out, if the map holds the edge as a side of the object, as
-    /// it does where the object was cut off by it from the beginning on; whether it has. A map of what lies beyond the edge was begun before, and
-    /// stays.
-    pub(super) fn begin_without_edge(&mut self, time: f64, left: &Outline) -> bool {
-        let holds_edge =
-            self.track.as_ref().is_none_or(|track| self.edges.end(track.outline_points(), &left.centroid()));
-        holds_edge && self.begin_with(time, left)
+    /// The step of a frame that a map was begun with.
+    pub(super) fn begun(&mut self, seconds: f64) -> FilterStep {
+        self.counts.accepted_in_recording += 1;
+        self.step_unmeasured(seconds, None)
     }
 
-    /// Begins anew with what is left of a frame beside an edge; whether enough is. A map that the edge was not taken for a side of, and which does
-    /// not explain that either, was led astray by the edge.
-    pub(super) fn begin_with(&mut self, time: f64, left: &Outline) -> bool {
+    /// The step of a frame that was compared with nothing.
+    pub(super) fn step_unmeasured(&self, seconds: f64, rejection: Option<Rejection>) -> FilterStep {
+        FilterStep { time: seconds, phase: self.phase, measurement: None, rejection }
+    }
+
+    /// Whether the map holds an edge that was just found as a side of the object, as it does where the object was cut off by it from the beginning on.
+    /// A map of what lies beyond the edge was begun before, and stays.
+    pub(super) fn holds_edge(&self, left: &Outline) -> bool {
+        self.track.as_ref().is_some_and(|track| self.edges.cuts_off(track.outline_points(), &left.centroid()))
+    }
+
+    /// Processes what is left of a frame. Where it `shows_edge` that was not known, and a map that explained the frames before disagrees, the edge has led
+    /// that map astray although it was not taken for a side of it: then a new one is begun. A wrong frame of an object that is not tracked is none to
+    /// begin with.
+    pub(super) fn process_beside_edges(
+        &mut self,
+        time: f64,
+        left: &Outline,
+        shows_edge: bool,
+    ) -> (Option<FrameMeasurement>, Option<Rejection>) {
+        let (was_tracked, restarts) = (self.phase == Phase::Tracking, self.counts.restarts);
+        let (measurement, rejection) = self.process(time, left);
+        let disagrees = was_tracked && rejection.is_some_and(Rejection::is_disagreement);
+        if shows_edge && disagrees && self.counts.restarts == restarts {
+            self.begin_beside_edge(time, left);
+        }
+        (measurement, rejection)
+    }
+
+    /// Begins anew with what is left of a frame beside an edge; whether enough is.
+    pub(super) fn begin_beside_edge(&mut self, time: f64, left: &Outline) -> bool {
         let is_begun = self.start(time, left).is_ok();
         if is_begun {
             self.before_repeated = None;
@@ -52,15 +83,19 @@ impl MotionFilter {
         is_begun
     }
 
-    /// After a frame of which an edge leaves too little: the object is moved on to its time, and lost where there are several.
-    pub(super) fn be_hidden(&mut self, seconds: f64, time: f64, outline: &Outline) -> FilterStep {
-        self.repeated.take(seconds, outline);
+    /// After a frame of which an edge leaves too little: the object is moved on to its time, and lost where there are several. What is hidden says
+    /// nothing against the map.
+    pub(super) fn be_hidden(&mut self, seconds: f64, time: f64) -> FilterStep {
         self.pass_over(time);
-        self.counts.add_rejected();
-        if self.phase == Phase::Tracking && self.counts.rejected_in_a_row >= self.settings.patience {
-            self.before_repeated = None;
+        self.counts.rejected_in_recording += 1;
+        self.counts.hidden_in_a_row += 1;
+        let unseen = self.counts.rejected_in_a_row + self.counts.hidden_in_a_row;
+        if self.phase == Phase::Tracking && unseen >= self.settings.patience {
             self.phase = Phase::Lost;
         }
-        FilterStep { time: seconds, phase: self.phase, measurement: None, rejection: Some(Rejection::NotFound) }
+        if self.phase != Phase::Tracking {
+            self.before_repeated = None;
+        }
+        self.step_unmeasured(seconds, Some(Rejection::Hidden))
     }
 }

@@ -68,6 +68,8 @@ pub(super) struct Counts {
     pub(super) accepted_in_recording: usize,
     pub(super) rejected_in_recording: usize,
     pub(super) rejected_in_a_row: usize,
+    /// Frames since the last one that was used of which an edge left too little.
+    pub(super) hidden_in_a_row: usize,
     /// Frames since the present track was begun, the one that it was begun with included.
     pub(super) accepted_by_track: usize,
     pub(super) rejected_by_track: usize,
@@ -85,7 +87,7 @@ impl Counts {
     fn add_accepted(&mut self) {
         self.accepted_in_recording += 1;
         self.accepted_by_track += 1;
-        (self.rejected_in_a_row, self.fruitless_starts) = (0, 0);
+        (self.rejected_in_a_row, self.hidden_in_a_row, self.fruitless_starts) = (0, 0, 0);
     }
 
     /// The object was not found in a frame.
@@ -194,27 +196,25 @@ impl MotionFilter {
         self.stated.take();
         self.choose_time_unit(time);
         let (seconds, time) = (time, time / self.seconds_per_unit());
-        let shows_edge = self.looks_for_edges() && self.edges.look(outline, seconds, self.all_agrees());
-        let Some(left) = self.edges.left_of(outline) else { return Ok(self.be_hidden(seconds, time, outline)) };
-        let left = &*left;
-        if self.track.is_none() || shows_edge && self.begin_without_edge(time, left) {
-            if self.track.is_none() {
-                self.start(time, left)?;
-            }
+        if self.track.is_none() {
+            self.start(time, outline)?;
+            self.look_for_edges(outline, seconds);
             self.repeated.take(seconds, outline);
-            self.counts.accepted_in_recording += 1;
-            return Ok(FilterStep { time: seconds, phase: self.phase, measurement: None, rejection: None });
+            return Ok(self.begun(seconds));
         }
-        if self.repeated.take(seconds, outline) && self.may_have_moved() {
+        let shows_edge = self.look_for_edges(outline, seconds);
+        let is_repeated = self.repeated.take(seconds, outline);
+        let Some(left) = self.edges.left_of(outline) else { return Ok(self.be_hidden(seconds, time)) };
+        let left = &*left;
+        if shows_edge && self.holds_edge(left) && self.begin_beside_edge(time, left) {
+            return Ok(self.begun(seconds));
+        }
+        if is_repeated && self.may_have_moved() {
             self.pass_over(time);
-            let rejection = Some(Rejection::Repeated);
-            return Ok(FilterStep { time: seconds, phase: self.phase, measurement: None, rejection });
+            return Ok(self.step_unmeasured(seconds, Some(Rejection::Repeated)));
         }
         self.go_back_before_repeated();
-        let (measurement, rejection) = self.process(time, left);
-        if shows_edge && rejection.is_some() {
-            self.begin_with(time, left);
-        }
+        let (measurement, rejection) = self.process_beside_edges(time, left, shows_edge);
         Ok(FilterStep { time: seconds, phase: self.phase, measurement, rejection })
     }
 

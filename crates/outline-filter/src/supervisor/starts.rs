@@ -27,7 +27,7 @@ impl MotionFilter {
         self.begin_window(time, outline, &track);
         self.replace(track, time, Phase::Acquiring);
         self.clock.last_frame = time;
-        self.counts.rejected_in_a_row = 0;
+        (self.counts.rejected_in_a_row, self.counts.hidden_in_a_row) = (0, 0);
         self.search_memory.unfound.clear();
         Ok(())
     }

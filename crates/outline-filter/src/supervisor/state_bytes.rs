@@ -124,6 +124,7 @@ impl MotionFilter {
             accepted_in_recording,
             rejected_in_recording,
             rejected_in_a_row,
+            hidden_in_a_row,
             accepted_by_track,
             rejected_by_track,
             restarts,
@@ -131,7 +132,7 @@ impl MotionFilter {
             begun_without_edge,
             fruitless_starts,
         } = self.counts;
-        let of_recording = [accepted_in_recording, rejected_in_recording, rejected_in_a_row];
+        let of_recording = [accepted_in_recording, rejected_in_recording, rejected_in_a_row, hidden_in_a_row];
         let of_starts = [restarts, begun_with_turn, begun_without_edge, fruitless_starts];
         of_recording.iter().chain(&of_starts).chain(&[accepted_by_track, rejected_by_track]).all(|count| *count < most)
     }

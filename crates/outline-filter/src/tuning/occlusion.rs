@@ -2,7 +2,7 @@
 
 /// Most places that a contour is reduced to: few enough to compare all with all in some microseconds, of a fiftieth of a body each.
 pub(crate) const MOST_PLACES: usize = 128;
-/// Fewest places: with fewer, a straight part of [`SHORTEST_SHARE`] has two of them.
+/// Fewest places: with fewer, a straight part of [`FEWEST_STRAIGHT`] is more than a quarter of all.
 pub(crate) const FEWEST_PLACES: usize = 24;
 /// Least deviation of a place, in sizes: less is what a cubic through its neighbours misses at corners.
 pub(crate) const LEAST_NOISE: f64 = 1.5e-3;
@@ -20,7 +20,7 @@ pub(crate) const MOVED_SHARE: f64 = 0.25;
 pub(crate) const FURTHER: f64 = 1.6;
 /// Contours that lie so many sizes apart are compared no more: the nearest motion between them is another one.
 pub(crate) const FARTHEST: f64 = 0.35;
-/// Shortest straight part, as a share of all places. It stays above the tooth of a gear and the end of a bar.
+/// Shortest straight part, as a share of all places: more than the tooth of a gear and the end of a bar have.
 pub(crate) const SHORTEST_SHARE: f64 = 0.08;
 /// Fewest places of a straight part: a line leaves four of them to say that it is one.
 pub(crate) const FEWEST_STRAIGHT: usize = 6;
@@ -40,6 +40,8 @@ pub(crate) const FITS_OF_LINE: usize = 4;
 pub(crate) const REST_AGREES: f64 = 0.9;
 /// Noise at which the rest is registered, over that of the contour, beyond which the object does not move rigidly.
 pub(crate) const MOST_SCATTER: f64 = 2.2;
+/// Share of the contour that must be left beside two straight parts that are judged together: a hand in front of a box at rest shows less of itself.
+pub(crate) const LEAST_REST: f64 = 0.5;
 /// Share of the straight part that must lie off the contour where the motion of the rest takes it: near the centre of a turn it hardly moves.
 pub(crate) const PART_DISAGREES: f64 = 0.4;
 /// Deviations, of noise and of the motion, that it must lie off by.
@@ -48,10 +50,15 @@ pub(crate) const OFF: f64 = 5.0;
 pub(crate) const LEAST_GAIN: f64 = 0.05;
 /// The same, as a share of the straight part.
 pub(crate) const GAIN_OF_PART: f64 = 0.3;
-/// Pairs of frames that must say so of one line, one after the other: two may show a bad frame before and after it.
+/// Pairs of frames that must say so of one line, of the last [`MOST_KEPT`]: two may show a bad frame before and after it. As many must say that an
+/// edge is no longer there.
 pub(crate) const PAIRS: usize = 3;
-/// Most pairs that are kept.
+/// Most pairs that are kept, and pairs after which one that was seen is forgotten.
 pub(crate) const MOST_KEPT: usize = 12;
+/// Lengths of what has been seen of an edge by which it may go on at each end: the object shows more of it from frame to frame.
+pub(crate) const GOES_ON: f64 = 1.0;
+/// Places on either side of an edge, within what has been seen of it, that make it one that is no longer there: its corners are rounded over a few.
+pub(crate) const FEWEST_ACROSS: usize = 6;
 /// Deviations within which lines of several pairs are one.
 pub(crate) const SAME_LINE: f64 = 5.0;
 /// Sine of the angle within which they are.
@@ -79,5 +86,17 @@ pub(crate) const FEWEST_OF_ARC: usize = 3;
 pub(crate) const REGISTRATION_STEPS: usize = 12;
 /// A step by less than this share of the noise is the last.
 pub(crate) const REGISTRATION_SETTLED: f64 = 0.03;
+/// Information of each place that the motion is held with, of 1 where it tells all: a circle does not tell its turn.
+pub(crate) const REGISTRATION_PRIOR: f64 = 1e-9;
+/// Most fits of a straight part that grows: each but the last adds to it.
+pub(crate) const FITS_OF_PART: usize = 8;
+/// Part of the shortest straight part, one in so many, by which the next one is looked for further on: none is missed that is a little longer.
+pub(crate) const SEED_STEP: usize = 4;
+/// As [`SEED_STEP`], that the next one may have in common with the one before it, at their corner.
+pub(crate) const SEED_OVERLAP: usize = 2;
+/// Most times that the time until now may pass until the next look.
+pub(crate) const MOST_WAITS: f64 = 2.0;
+/// Widths of an edge within which cells of a map lie along it: it was there in other frames too.
+pub(crate) const WIDTHS_OF_MAP: f64 = 2.0;
 /// Fewest places that tell a rigid motion.
 pub(crate) const FEWEST_REGISTERED: usize = 6;

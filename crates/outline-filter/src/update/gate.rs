@@ -58,8 +58,18 @@ pub enum Rejection {
     /// The frame repeats the one before it to the last digit, and the object is not known to be at rest: a picture that was stored twice shows nothing of
     /// the time that it is given with. After three in a row the object rests.
     Repeated,
+    /// All but a few points lie along [edges](crate::MotionFilter::standing_edges) that are not of the object, which may be behind them. That says nothing
+    /// against what is known of it.
+    Hidden,
     /// No pose was found, or none that linearisations settle in, or none was looked for, as too many frames have been searched in vain.
     NotFound,
+}
+
+impl Rejection {
+    /// Whether points were compared with the known outline, and did not agree with it where it was expected.
+    pub(crate) fn is_disagreement(self) -> bool {
+        matches!(self, Self::AgreementTooSmall { .. } | Self::InnovationTooLarge { .. } | Self::NoiseTooLarge { .. })
+    }
 }
 
 /// Conditions for accepting a frame. The limits are set by the `supervisor` (`tracking::gate`, `tracking::Gates`); that on noise is
@@ -304,6 +314,7 @@ impl fmt::Display for Rejection {
                 )
             }
             Self::Repeated => f.write_str("repeats the frame before it"),
+            Self::Hidden => f.write_str("shows little but an edge in front of the object"),
             Self::NotFound => f.write_str("the object was not found"),
         }
     }

@@ -1,6 +1,6 @@
 //! Straight edges of what is in front of an object, that nobody has declared.
 use freeform_curve_fit::Outline;
-use freeform_outline_filter::{FilterSettings, MotionFilter};
+use freeform_outline_filter::{FilterSettings, MotionFilter, Phase, Rejection};
 use freeform_riccati::MotionModel;
 use nalgebra::{Isometry2, Point2, Vector2};
 use rand::{RngExt as _, SeedableRng as _};
@@ -68,12 +68,19 @@ impl Hidden {
 }
 
 /// What is seen of a body in a pose: the outline is closed along the edge of what hides a part of it. Points are spaced evenly, and err.
-fn seen(body: Body, pose: &Isometry2<f64>, hidden: Option<(Hidden, usize)>, random: &mut ChaCha8Rng) -> Outline {
+fn seen(
+    body: Body,
+    pose: &Isometry2<f64>,
+    hidden: impl IntoIterator<Item = (Hidden, usize)> + Clone,
+    random: &mut ChaCha8Rng,
+) -> Outline {
     const FINE: usize = 4000;
     let shown = |i: usize| {
         let p = pose * body(std::f64::consts::TAU * i as f64 / FINE as f64);
         hidden
-            .map_or(p, |(edge, frame)| p - edge.normal * (p.coords.dot(&edge.normal) - edge.offset_in(frame)).max(0.0))
+            .clone()
+            .into_iter()
+            .fold(p, |p, (edge, frame)| p - edge.normal * (p.coords.dot(&edge.normal) - edge.offset_in(frame)).max(0.0))
     };
     let curve: Vec<_> = (0..=FINE).map(shown).collect();
     let mut along = vec![0.0];
@@ -173,17 +180,114 @@ fn a_body_that_has_gone_behind_an_edge_is_lost_and_found_when_it_comes_back() {
         Isometry2::new(Vector2::new(0.1 + away, 0.0), 0.4 * time)
     };
     let (mut run, mut random) = (filter(MotionModel::Rigid), ChaCha8Rng::seed_from_u64(8));
-    let mut lost = 0;
+    let (mut lost, mut last) = (0, None);
     for frame in 0..60 {
         let time = frame as f64 / FRAME_RATE;
         let step =
             run.step(time, &seen(pebble, &pose(time), Some((hidden, frame)), &mut random)).expect("increasing times");
         let is_gone = pose(time).translation.x > 0.3 + 0.62;
         assert!(!is_gone || !step.is_accepted(), "frame {frame} shows nothing of the body");
-        lost += usize::from(is_gone);
+        lost += usize::from(step.phase == Phase::Lost);
+        last = Some(step);
     }
-    assert!(lost > 10 && run.standing_edges().len() == 1);
-    assert!(run.frames_accepted() > 20, "{}", run.frames_accepted());
+    assert!(lost > 10 && run.standing_edges().len() == 1, "{lost}");
+    assert!(last.is_some_and(|step| step.is_accepted() && step.phase == Phase::Tracking), "{last:?}");
+    assert_eq!((run.restarts(), run.segment()), (0, 1), "begun anew once, beside the edge, and not given up");
+    let back = pose(59.0 / FRAME_RATE).inverse();
+    for p in run.outline_points() {
+        let own = back * p;
+        let off = own.coords.norm() - pebble(own.y.atan2(own.x)).coords.norm();
+        assert!(off.abs() < 0.03, "{p} is {off} off the body");
+    }
+}
+
+#[test]
+fn a_body_hidden_for_longer_than_any_is_searched_for_is_not_given_up() {
+    let hidden = Hidden { normal: Vector2::x(), offset: 0.45, drift: 0.0 };
+    // Behind the edge for three seconds.
+    let pose = |time: f64| Isometry2::new(Vector2::new(0.1 + 0.9 * (1.3 * time).min(1.0), 0.0), 0.6 * time);
+    let (mut run, mut random) = (filter(MotionModel::Rigid), ChaCha8Rng::seed_from_u64(8));
+    let mut hidden_frames = 0;
+    for frame in 0..120 {
+        let time = frame as f64 / FRAME_RATE;
+        let outline = seen(pebble, &pose(time), Some((hidden, frame)), &mut random);
+        let step = run.step(time, &outline).expect("increasing times");
+        hidden_frames += usize::from(step.rejection == Some(Rejection::Hidden));
+    }
+    assert!(hidden_frames > 60, "{hidden_frames}");
+    assert_eq!((run.phase(), run.restarts(), run.segment()), (Phase::Lost, 0, 0));
+}
+
+#[test]
+fn two_edges_at_once_are_both_found() {
+    for seed in [1, 2, 3] {
+        let edges = [(Vector2::x(), 0.4), (Vector2::new(-0.6, 0.8), 0.4)].map(|(normal, offset)| Hidden {
+            normal,
+            offset,
+            drift: 0.0,
+        });
+        let (mut run, mut random) = (filter(MotionModel::Rigid), ChaCha8Rng::seed_from_u64(seed));
+        for frame in 0..90 {
+            let time = frame as f64 / FRAME_RATE;
+            let outline = seen(pebble, &Isometry2::rotation(0.9 * time), edges.map(|edge| (edge, frame)), &mut random);
+            run.step(time, &outline).expect("increasing times");
+        }
+        let found: Vec<_> = run.standing_edges().collect();
+        assert_eq!(found.len(), 2, "seed {seed}: {found:?}");
+        for edge in edges {
+            let is_on = |p: &Point2<f64>| (p.coords.dot(&edge.normal) - edge.offset).abs() < 0.015;
+            assert!(found.iter().any(|found| is_on(&found.from) && is_on(&found.to)), "seed {seed}: {found:?}");
+        }
+        assert_turns(&run, 0.9, &format!("seed {seed}"));
+    }
+}
+
+#[test]
+fn an_edge_that_has_left_is_dropped_and_the_whole_body_is_followed() {
+    let hidden = Hidden { normal: Vector2::new(0.6, 0.8), offset: 0.25, drift: 0.0 };
+    let (mut run, mut random) = (filter(MotionModel::Rigid), ChaCha8Rng::seed_from_u64(2));
+    for frame in 0..240 {
+        let time = frame as f64 / FRAME_RATE;
+        let there = (frame < 60).then_some((hidden, frame));
+        run.step(time, &seen(pebble, &about_the_origin(0.9)(time), there, &mut random)).expect("increasing times");
+        assert!(frame != 59 || run.standing_edges().len() == 1, "it was there");
+    }
+    assert_eq!(run.standing_edges().len(), 0, "{:?}", run.standing_edges().next());
+    assert_eq!(run.restarts(), 0);
+    assert_turns(&run, 0.9, "afterwards");
+}
+
+#[test]
+fn an_edge_that_moves_is_followed_where_frames_are_missing() {
+    let hidden = Hidden { normal: Vector2::new(0.6, 0.8), offset: 0.25 - 25.0 * 0.0015, drift: 0.0015 };
+    let (mut run, mut random) = (filter(MotionModel::Rigid), ChaCha8Rng::seed_from_u64(3));
+    // Every frame in the first third, then two of five.
+    for frame in (0..120).filter(|frame| *frame < 40 || [0, 3].contains(&(frame % 5))) {
+        let time = frame as f64 / FRAME_RATE;
+        let outline = seen(pebble, &about_the_origin(0.9)(time), Some((hidden, frame)), &mut random);
+        run.step(time, &outline).expect("increasing times");
+    }
+    assert_eq!(run.standing_edges().len(), 1);
+    assert_turns(&run, 0.9, "with gaps");
+}
+
+#[test]
+fn a_hand_in_front_of_a_box_at_rest_makes_no_edges_of_its_sides() {
+    let (mut run, mut random) = (filter(MotionModel::Rigid), ChaCha8Rng::seed_from_u64(9));
+    // Two sides of what moves hide a corner of the square.
+    let square: Body = |angle| bar(angle).coords.component_mul(&Vector2::new(1.0, 3.0)).into();
+    for frame in 0..90 {
+        let time = frame as f64 / FRAME_RATE;
+        let turn = 0.7 + 0.5 * (2.0 * time).sin();
+        let hand = Hidden {
+            normal: Vector2::new(turn.cos(), turn.sin()),
+            offset: 0.55 + 0.1 * (3.0 * time).cos(),
+            drift: 0.0,
+        };
+        let outline = seen(square, &Isometry2::identity(), Some((hand, 0)), &mut random);
+        run.step(time, &outline).expect("increasing times");
+    }
+    assert_eq!(run.standing_edges().len(), 0, "{:?}", run.standing_edges().next());
 }
 
 #[test]

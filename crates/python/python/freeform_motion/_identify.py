@@ -182,7 +182,8 @@ def track(
         Of the kind of `data`, a dict of arrays for masks and outlines. One row per object and frame, in the order of the data: `object`, `frame`,
         `time`, `phase`, `accepted`; the pose (motion filter), for a rigid motion `angle`, `x` and `y`, each with its `_std`; the motion, for
         a rigid one `omega`, `b1` and `b2`, each with its `_std`; `segment`, counted up where an object was given up and begun anew, or has
-        shown its turn for the first time: nobody knows how far it had turned until then; `v1` and `v2`, each with its `_std`, the velocity of
+        shown its turn for the first time, since nobody knows how far it had turned until then, and where an edge was found not to be of the
+        object; `v1` and `v2`, each with its `_std`, the velocity of
         the middle of the object (motion filter), in the unit of `x` and `y` per second; `reason`, why the frame was not accepted; `unstated`,
         which values of the row are not stated and why, such as `omega ambiguous; b1 ambiguous`, by the words of `Observation.not_stated`.
         NaN where something is not known, an empty text where there is nothing to tell; in a dict these two columns are arrays of objects.
