@@ -265,7 +265,7 @@ mod tests {
     #[test]
     fn an_outline_that_turns_and_travels_is_as_fast_as_its_points_are_root_mean_square() {
         let (omega, centroid) = (0.7, Point2::new(0.3, -0.1));
-        let motion: ParameterVector = [omega, 0.2, -0.4, 0.0, 0.0, 0.0, 0.0, 0.0].into();
+        let motion: ParameterVector = [omega, 0.2, -0.4, 0.0, 0.0, 0.0, 0.0, 0.0];
         let summary = Summary { pose: moved_by(1.0, 2.0), motion, covariance: StateMatrix::zeros() };
         let centre = map_point(&summary.pose, &centroid);
         let squares = (0..8).map(|i| {
