@@ -325,6 +325,8 @@ mod tests {
 
     use super::*;
 
+    type Damage = fn(&mut StandingEdges);
+
     /// What is known after a disc has been looked at, with an edge.
     fn with_edge() -> StandingEdges {
         let point = |i: i32| Point2::new((0.06 * f64::from(i)).cos(), (0.06 * f64::from(i)).sin());
@@ -341,7 +343,7 @@ mod tests {
     #[test]
     fn damaged_edges_are_not_valid() {
         assert!(with_edge().is_valid(1000));
-        let damages: [(&str, fn(&mut StandingEdges)); 16] = [
+        let damages: [(&str, Damage); 16] = [
             ("noise without end", |e| e.sightings[0].noise = f64::INFINITY),
             ("a reach that is no number", |e| e.sightings[0].reach[1] = f64::NAN),
             ("a reach the wrong way round", |e| e.sightings[0].reach = [0.5, -0.4]),

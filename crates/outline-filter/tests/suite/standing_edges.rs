@@ -71,14 +71,13 @@ impl Hidden {
 fn seen(
     body: Body,
     pose: &Isometry2<f64>,
-    hidden: impl IntoIterator<Item = (Hidden, usize)> + Clone,
+    hidden: impl IntoIterator<Item = (Hidden, usize)> + Copy,
     random: &mut ChaCha8Rng,
 ) -> Outline {
     const FINE: usize = 4000;
     let shown = |i: usize| {
         let p = pose * body(std::f64::consts::TAU * i as f64 / FINE as f64);
         hidden
-            .clone()
             .into_iter()
             .fold(p, |p, (edge, frame)| p - edge.normal * (p.coords.dot(&edge.normal) - edge.offset_in(frame)).max(0.0))
     };
@@ -277,7 +276,7 @@ fn a_hand_in_front_of_a_box_at_rest_makes_no_edges_of_its_sides() {
     // Two sides of what moves hide a corner of the square.
     let square: Body = |angle| bar(angle).coords.component_mul(&Vector2::new(1.0, 3.0)).into();
     for frame in 0..90 {
-        let time = frame as f64 / FRAME_RATE;
+        let time = f64::from(frame) / FRAME_RATE;
         let turn = 0.7 + 0.5 * (2.0 * time).sin();
         let hand = Hidden {
             normal: Vector2::new(turn.cos(), turn.sin()),
