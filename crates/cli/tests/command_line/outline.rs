@@ -249,7 +249,7 @@ fn the_table_says_where_b_is_and_in_which_unit() {
         let report = folder.path().join("report.html");
         let table = succeed(&format!("identify {frames} {options} --report {}", report.display()), "");
         assert!(std::fs::read_to_string(report).expect("a report").contains(note.trim_end()), "{note}");
-        assert!(table.ends_with(note), "{table}");
+        assert!(table.contains(note), "{table}");
         assert_eq!(table.contains("px/s"), options.is_empty(), "{table}");
         assert!(table.lines().all(|line| line.chars().count() <= 80), "{table}");
     }
