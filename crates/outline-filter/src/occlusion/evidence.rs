@@ -87,8 +87,8 @@ impl<'a> Pair<'a> {
         [now, before]
     }
 
-    /// The longest straight parts that have stayed, so many more as edges are known. None where what has moved is one straight line: that may be an edge which moves in front of an
-    /// object at rest, as well as a side of an object that comes out from behind an edge at rest.
+    /// The longest straight parts that have stayed, so many more as edges are known. None where what has moved is one straight line: that may be an edge
+    /// which moves in front of an object at rest, as well as a side of an object that comes out from behind an edge at rest.
     pub(super) fn straight_parts(&self, known: usize) -> Vec<Stayed> {
         if self.moved_is_straight() {
             return Vec::new();
