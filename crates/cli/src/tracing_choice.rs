@@ -10,6 +10,9 @@ use freeform_motion::short;
 use crate::args::{ChannelChoice, ContoursChoice, ObjectsChoice, PictureOptions, RingChoice};
 use crate::progress::{Progress, Verbosity};
 
+/// Area of another object over that of the one which is followed, from which on it is told that it is not: specks are smaller.
+const WORTH_TELLING: f64 = 0.1;
+
 /// The options that look for what moves.
 const MOVING: &str = "--background whole --objects moving --min-area PIXELS";
 
@@ -19,6 +22,8 @@ pub(crate) struct Chosen {
     pub(crate) choice: TracingChoice,
     /// The options that give it again.
     pub(crate) options: String,
+    /// Area of another object over that of the largest, which alone is followed, where that is worth telling.
+    left_out: Option<f64>,
 }
 
 impl Chosen {
@@ -38,7 +43,11 @@ impl Chosen {
             }
             _ => String::new(),
         };
-        format!("traced with {} (chosen among {} ways{found}){still}", self.options, self.choice.candidates.len())
+        let beside = self.left_out.map_or_else(String::new, |share| {
+            format!("; another object, of {:.0} % of its area, is not followed: --objects all does", 100.0 * share)
+        });
+        let ways = self.choice.candidates.len();
+        format!("traced with {} (chosen among {ways} ways{found}){still}{beside}", self.options)
     }
 
     /// What is said of it where it is not to be trusted, by the codes.
@@ -104,7 +113,9 @@ pub(crate) fn choose(
     if given.channel.is_some() {
         parts.retain(|part| !part.starts_with("--channel"));
     }
-    (options, Some(Chosen { choice, options: parts.join(" ") }))
+    let follows_one = objects.is_none() && given.objects.is_none();
+    let left_out = Some(best.second).filter(|share| follows_one && *share >= WORTH_TELLING);
+    (options, Some(Chosen { choice, options: parts.join(" "), left_out }))
 }
 
 /// Puts a way into options.

@@ -24,6 +24,27 @@ fn without_options_the_way_of_tracing_is_found_printed_and_gives_the_same_again(
 }
 
 #[test]
+fn where_the_largest_of_several_objects_is_followed_it_is_said_how_all_are() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let is_in = |x: u32, y: u32, [cx, cy, radius]: [f64; 3]| (f64::from(x) - cx).hypot(f64::from(y) - cy) < radius;
+    for frame in 0..12_u32 {
+        let shift = 4.0 * f64::from(frame);
+        let value = |x, y| {
+            let light = is_in(x, y, [60.0 + shift, 80.0, 30.0]) || is_in(x, y, [240.0 - shift, 180.0, 15.0]);
+            Luma([if light { 180 } else { 60 } + ((x * 7 + y * 13 + frame) % 5) as u8])
+        };
+        GrayImage::from_fn(320, 240, value).save(folder.path().join(format!("{frame:02}.png"))).expect("a picture");
+    }
+    let frames = folder.path().to_str().expect("UTF-8");
+    let told = |options: &str| stderr(&run(&format!("identify {frames} --fps 30 {options}"), ""));
+    let note = "another object, of 25 % of its area, is not followed: --objects all does";
+    assert!(told("").contains(note), "{}", told(""));
+    for options in ["--objects all", "--objects largest"] {
+        assert!(!told(options).contains("is not followed"), "{options}: {}", told(options));
+    }
+}
+
+#[test]
 fn an_assumed_rate_and_a_choice_without_conviction_are_said() {
     let folder = tempfile::tempdir().expect("a folder");
     let (frames, _) = pears(folder.path(), "frames", 4);

@@ -32,6 +32,8 @@ pub struct TracingEvidence {
     pub area_share: f64,
     /// Objects of at least half its area, in the median picture.
     pub objects: usize,
+    /// Area of the largest other object over its own, in the median picture; 0 where there is none.
+    pub second: f64,
     /// Which objects are worth to be followed: all where several are of its size, those that move where it was chosen as it moves.
     pub selection: Selection,
     /// Share of its area that holes and marks have.
@@ -98,6 +100,7 @@ pub(super) fn evidence_of(trial: &Trial, tracing: Tracing, sights: &[Sight]) -> 
         clipped,
         area_share,
         objects,
+        second,
         selection: if objects > 1 { Selection::All } else { Selection::Largest },
         inner_share: of(&|sight| sight.inner.0)?,
         has_steady_contours: has_steady_contours(&whole),

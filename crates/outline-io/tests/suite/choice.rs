@@ -50,6 +50,21 @@ fn choice(pictures: &[GrayImage]) -> TracingChoice {
 }
 
 #[test]
+fn of_a_disc_and_a_smaller_one_the_share_of_the_smaller_is_told() {
+    for (radius, expected) in [(15.0, 0.25), (0.0, 0.0)] {
+        let pictures = (0..12).map(|frame| {
+            let shift = 4.0 * f64::from(frame);
+            let large = [60.0 + shift, 80.0, 30.0];
+            let small = [240.0 - shift, 180.0, radius];
+            picture(frame, |x, y| disc(x, y, large).min(disc(x, y, small) + if radius > 0.0 { 0.0 } else { 9.0 }))
+        });
+        let best = chosen(&pictures.collect::<Vec<_>>());
+        assert_eq!(best.selection, Selection::Largest);
+        assert!((best.second - expected).abs() < 0.03, "{radius}: {}", best.second);
+    }
+}
+
+#[test]
 fn a_small_disc_that_moves_is_followed_where_something_larger_rests() {
     // By its own size, and by four times that, from picture to picture.
     for (step, radius) in [(6.0, 8.0), (24.0, 6.0)] {
