@@ -2,6 +2,7 @@
 use freeform_curve_fit::{OpenArc, OpenOutline, Outline, OutlineError};
 use nalgebra::Point2;
 
+use super::places::{runs, runs_all_round};
 use crate::tuning::occlusion::FEWEST_OF_ARC;
 
 /// An outline without the points that are `on_edge`, nor so many next to them on either side, where the contour turns round the corner; `None`
@@ -52,13 +53,10 @@ fn numbers_of_arcs(
             }
         }
     }
-    let first_gone = is_left.iter().position(|left| !left);
-    let round: Vec<_> = match first_gone {
-        None if closed => (0..=count).map(|i| i % count).collect(),
-        Some(first) if closed => (first..first + count).map(|i| i % count).collect(),
-        _ => (0..count).collect(),
-    };
-    round.split(|i| !is_left[*i]).filter(|arc| !arc.is_empty()).map(<[usize]>::to_vec).collect()
+    if !closed {
+        return runs(0..count, |i| is_left[i]);
+    }
+    runs_all_round(count, |i| is_left[i]).unwrap_or_else(|| vec![(0..=count).map(|i| i % count).collect()])
 }
 
 #[cfg(test)]

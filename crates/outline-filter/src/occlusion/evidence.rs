@@ -3,7 +3,7 @@ use nalgebra::Point2;
 
 use super::{
     line::{Line, longest_straight},
-    places::{Foot, Places, median},
+    places::{Foot, Places, median, runs_all_round},
     registration::{Moved, registered},
 };
 use crate::tuning::occlusion::{
@@ -126,9 +126,7 @@ impl<'a> Pair<'a> {
         let stayed = |i: usize| {
             self.has_stayed(i) || self.has_stayed((i + 1) % count) && self.has_stayed((i + count - 1) % count)
         };
-        let Some(first) = (0..count).find(|i| !stayed(*i)) else { return Vec::new() };
-        let round: Vec<_> = (first..first + count).map(|i| i % count).collect();
-        round.split(|i| !stayed(*i)).filter(|run| !run.is_empty()).map(<[usize]>::to_vec).collect()
+        runs_all_round(count, stayed).unwrap_or_default()
     }
 
     /// Whether a part that has stayed is not of the object. One rigid motion explains the rest of the contour. It takes the part off the earlier

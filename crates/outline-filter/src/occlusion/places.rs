@@ -143,10 +143,21 @@ impl Places {
     }
 }
 
-/// Median, the upper of two; 0 of none.
+/// Median; 0 of none.
 pub(super) fn median(mut values: Vec<f64>) -> f64 {
-    let middle = values.len() / 2;
-    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
+    crate::map::median(&mut values).unwrap_or(0.0)
+}
+
+/// Runs of neighbours among numbers that are `in_run`.
+pub(super) fn runs(numbers: impl Iterator<Item = usize>, in_run: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {
+    let numbers: Vec<_> = numbers.collect();
+    numbers.split(|i| !in_run(*i)).filter(|run| !run.is_empty()).map(<[usize]>::to_vec).collect()
+}
+
+/// As [`runs`], of so many numbers all round, the first of which follows the last; `None` where all are one run without an end.
+pub(super) fn runs_all_round(count: usize, in_run: impl Fn(usize) -> bool) -> Option<Vec<Vec<usize>>> {
+    let first = (0..count).find(|i| !in_run(*i))?;
+    Some(runs((first..first + count).map(|i| i % count), in_run))
 }
 
 #[cfg(test)]

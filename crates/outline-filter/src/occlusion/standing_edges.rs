@@ -160,11 +160,11 @@ impl StandingEdges {
         let shown = pair.shown(&parts, &known);
         let mut is_new = false;
         for (i, part) in shown.iter().enumerate() {
+            let seen = self.sighting(part, (&places, noise));
             // Two parts of one line say no more than the longer one: a pair counts once.
-            if shown[..i].iter().any(|longer| self.sighting(part, (&places, noise)).is_of(&longer.line)) {
-                continue;
+            if !shown[..i].iter().any(|longer| seen.is_of(&longer.line)) {
+                is_new |= self.see(seen);
             }
-            is_new |= self.see(part, (&places, noise));
         }
         if is_done || !shown.is_empty() {
             self.drop_crossed(&places, noise);
@@ -210,8 +210,7 @@ impl StandingEdges {
     }
 
     /// Takes note of a straight part that is not of the object; whether it has been seen often enough, and was not known.
-    fn see(&mut self, part: &Stayed, (places, noise): (&Places, f64)) -> bool {
-        let seen = self.sighting(part, (places, noise));
+    fn see(&mut self, seen: Sighting) -> bool {
         let (time, pair) = (seen.time, seen.pair);
         if let Some(edge) = self.edges.iter_mut().find(|edge| seen.is_of(&edge.path.line_at(time))) {
             edge.follow(seen);

@@ -118,18 +118,21 @@ impl Track {
         if is_beyond_linear(belief.model, &null) {
             return None;
         }
-        let [mut summary, Summary { covariance: given_outline, .. }] = self.held_summaries(&null)?;
-        self.add_kept_error(&mut summary.covariance, &summary.pose);
+        let (summary, given_outline) = self.summary_beside_outline(&null)?;
         let place = (self.map.centroid(), null.as_slice());
         DynamicsFilter::begin(belief.model, setting, (&summary, &given_outline), place, belief.memory.step)
     }
 
+    /// What is believed, with all that poses have in common, and the covariance that it would have if the outline were known.
+    fn summary_beside_outline(&self, null: &[NullDirection]) -> Option<(Summary, StateMatrix)> {
+        let [mut summary, Summary { covariance: given_outline, .. }] = self.held_summaries(null)?;
+        self.add_kept_error(&mut summary.covariance, &summary.pose);
+        Some((summary, given_outline))
+    }
+
     /// Hands on to hypotheses of dynamics what the outline, as it is known now, adds to the errors of poses.
     pub(crate) fn renew_common_error(&self, dynamics: &mut DynamicsFilter) {
-        if let Some([mut summary, Summary { covariance: given_outline, .. }]) =
-            self.held_summaries(&self.null_directions())
-        {
-            self.add_kept_error(&mut summary.covariance, &summary.pose);
+        if let Some((summary, given_outline)) = self.summary_beside_outline(&self.null_directions()) {
             dynamics.renew_common_error(&summary, &given_outline);
         }
     }
