@@ -6,13 +6,27 @@ use crate::{
     tuning::{symmetry::SAME, turn_hypotheses as tuning},
 };
 
-/// The angle by which an outline looks the same, rad: a whole turn where it has no symmetry, 0 before it is known.
-#[derive(Debug, Clone, Copy, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+/// The angle by which an outline looks the same, rad: a whole turn where no symmetry of it is known.
+#[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(from = "f64"))]
 pub(super) struct SymmetryAngle(f64);
 
+impl Default for SymmetryAngle {
+    fn default() -> Self {
+        Self::WHOLE_TURN
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<f64> for SymmetryAngle {
+    /// A saved state may have 0 for the angle of an outline that no symmetry has been looked for in.
+    fn from(radians: f64) -> Self {
+        if radians == 0.0 { Self::WHOLE_TURN } else { Self(radians) }
+    }
+}
+
 impl SymmetryAngle {
-    /// Of an outline without a symmetry.
+    /// Of an outline without a known symmetry.
     pub(super) const WHOLE_TURN: Self = Self(TAU);
 
     /// Of an outline with a symmetry of some order, 1 where there is none.
@@ -24,9 +38,9 @@ impl SymmetryAngle {
         self.0
     }
 
-    /// Itself, or a whole turn before it is known.
-    pub(super) fn or_whole_turn(self) -> Self {
-        if self.0 > 0.0 { self } else { Self::WHOLE_TURN }
+    #[cfg(feature = "serde")]
+    pub(super) fn is_valid(self) -> bool {
+        self.0.is_finite() && self.0 > 0.0
     }
 
     /// Turns farther apart than this are different, rad.
@@ -59,4 +73,16 @@ impl SymmetryAngle {
 /// Whether a turn cannot be taken for granted against another.
 pub(super) fn is_doubtful(other: f64, present: f64) -> bool {
     other.abs() < tuning::SURELY_SMALLER * present.abs()
+}
+
+#[cfg(all(test, feature = "serde"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_angle_0_of_a_saved_state_is_read_as_that_of_no_known_symmetry() {
+        assert_eq!(SymmetryAngle::from(0.0).radians(), TAU);
+        assert_eq!(SymmetryAngle::from(1.0).radians(), 1.0);
+        assert!(![-1.0, f64::NAN, f64::INFINITY].into_iter().any(|radians| SymmetryAngle::from(radians).is_valid()));
+    }
 }

@@ -81,14 +81,12 @@ impl TurnHypotheses {
     /// Puts a turn in doubt that is more than half of what the outline looks the same by, over so short a time that no frames have told it from one in
     /// the other direction.
     pub(super) fn doubt_more_than_half(&mut self, turn: f64, seconds: f64) {
-        let symmetry_angle = self.symmetry_angle.or_whole_turn();
-        let angle = symmetry_angle.radians();
+        let angle = self.symmetry_angle.radians();
         let is_in_doubt = |i: usize| self.rivals[i].reason == Reason::Symmetry && self.is_doubtful(i);
         if turn.abs() <= 0.5 * angle || self.are_told_by_intervals || (0..self.rivals.len()).any(is_in_doubt) {
             return;
         }
         self.count_over(turn, seconds);
-        self.symmetry_angle = symmetry_angle;
         self.rival_turns.push(turn - angle.copysign(turn));
         self.rivals.push(TurnHypothesis::new(None, NegativeLogLikelihood::default(), Reason::Symmetry));
     }
@@ -357,8 +355,8 @@ impl TurnHypotheses {
             && self.likelihood.is_valid()
             && self.rivals.iter().all(|hypothesis| hypothesis.likelihood.is_valid())
             && self.frames < StateFormat::MOST_COUNTED
-            && (self.rivals.is_empty()
-                || [self.symmetry_angle.radians(), self.acquired_over].iter().all(|n| n.is_finite() && *n > 0.0));
+            && self.symmetry_angle.is_valid()
+            && (self.rivals.is_empty() || self.acquired_over.is_finite() && self.acquired_over > 0.0);
         is_valid && self.rivals.iter_mut().filter_map(|hypothesis| hypothesis.track.as_mut()).all(restore)
     }
 }
