@@ -1,7 +1,10 @@
 //! What holds for the points of any outline.
 use nalgebra::{Matrix2, Point2, Vector2};
 
-use crate::error::{COORDINATE_LIMIT, OutlineError, SMALLEST_EXTENT};
+use crate::{
+    error::{COORDINATE_LIMIT, OutlineError, SMALLEST_EXTENT},
+    principal_axis::principal_angle,
+};
 
 /// Two principal radii whose ratio is at most this are taken for points on one line.
 const COLLINEAR_RATIO: f64 = 1e-9;
@@ -23,8 +26,7 @@ impl Spread {
 
     /// Unit vector along which the points scatter most.
     fn axis(&self) -> Vector2<f64> {
-        let (a, b, d) = (self.scatter[(0, 0)], self.scatter[(0, 1)], self.scatter[(1, 1)]);
-        let angle = 0.5 * (2.0 * b).atan2(a - d);
+        let angle = principal_angle(&self.scatter);
         Vector2::new(angle.cos(), angle.sin())
     }
 }

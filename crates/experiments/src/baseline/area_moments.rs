@@ -1,3 +1,4 @@
+use freeform_curve_fit::principal_angle;
 use nalgebra::{Complex, Matrix2, Point2, Vector2};
 
 /// Moments up to the third order of the area that a polygon encloses, about its centroid and per area.
@@ -52,8 +53,7 @@ impl AreaMoments {
 
     /// Direction of the longer principal axis, rad; its other end is as good.
     pub(super) fn axis(&self) -> f64 {
-        let c = &self.covariance;
-        0.5 * (2.0 * c[(0, 1)]).atan2(c[(0, 0)] - c[(1, 1)])
+        principal_angle(&self.covariance)
     }
 
     /// How well the third moments of `self` turned by an angle in rad agree with those of `other`: 1 for a turned copy, -1 for one

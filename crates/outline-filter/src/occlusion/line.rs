@@ -1,5 +1,6 @@
 //! Straight lines through points.
-use nalgebra::{Point2, Vector2};
+use freeform_curve_fit::principal_angle;
+use nalgebra::{Matrix2, Point2, Vector2};
 
 #[cfg(feature = "serde")]
 use crate::tuning::map::UNIT_NORMAL;
@@ -57,7 +58,7 @@ impl Line {
         }
         let (middle, difference) = (0.5 * (xx + yy), 0.5 * (xx - yy));
         let least = (middle - difference.hypot(xy)).max(0.0);
-        let angle = 0.5 * xy.atan2(difference);
+        let angle = principal_angle(&Matrix2::new(xx, xy, xy, yy));
         let line = Self { through: mean.into(), along: Vector2::new(angle.cos(), angle.sin()) };
         Some((line, (least / count).sqrt()))
     }
