@@ -39,8 +39,7 @@ impl MotionFilter {
                 .unwrap_or_else(|| going_on.update(&mut self.frame, &gate, Comparison::NotAsked));
             if outcome.is_accepted() {
                 history.record(&outcome, seconds);
-                self.replace(going_on, time, Phase::Tracking);
-                self.history = history;
+                self.replace(going_on, history, time, Phase::Tracking);
                 return Some(self.look_elsewhere(outcome.after_rejected(), time, outline));
             }
             if self.track.as_ref().is_some_and(|track| track.noise().is_found_independent()) {
@@ -157,7 +156,8 @@ impl MotionFilter {
         let outcome = taken.as_ref().map_or(nearest, |candidate| candidate.outcome);
         if let Some(taken) = taken {
             // Where a lost object is now says nothing of how it moves now.
-            self.replace(taken.track, time, if lost { Phase::Acquiring } else { Phase::Tracking });
+            let phase = if lost { Phase::Acquiring } else { Phase::Tracking };
+            self.replace(taken.track, self.history.begun_anew(), time, phase);
             self.track.as_mut().into_iter().for_each(|track| track.record_turn(TurnEvent::Confirmed));
         }
         if let Some(track) = self.track.as_mut().filter(|_| outcome.is_accepted() || lost) {

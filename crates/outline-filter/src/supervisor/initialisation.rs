@@ -197,7 +197,7 @@ impl MotionFilter {
         let to_body: Option<Affine2<f64>> = nalgebra::try_convert(new.pose().inverse());
         self.search_memory.landmarks = to_body.and_then(|to_body| Some(Landmarks::of(outline)?.moved(&to_body)));
         self.begin_window(self.clock.last_frame, outline, &new);
-        self.replace(new, self.clock.of_track, Phase::Acquiring);
+        self.replace(new, MotionHistory::default(), self.clock.of_track, Phase::Acquiring);
         self.counts.begun_with_turn += 1;
     }
 }

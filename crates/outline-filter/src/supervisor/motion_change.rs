@@ -103,9 +103,9 @@ impl MotionHistory {
         Some(REACH * apart * apart.transpose())
     }
 
-    /// Forgets what was tied to another pose.
-    pub(super) fn begin_anew(&mut self) {
-        (self.dynamics, self.contradiction, self.since_taken) = (None, None, 0.0);
+    /// Of another pose: without what was tied to this one.
+    pub(super) fn begun_anew(&self) -> Self {
+        Self { change: self.change, ..Self::default() }
     }
 }
 

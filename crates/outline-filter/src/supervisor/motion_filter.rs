@@ -298,7 +298,7 @@ impl MotionFilter {
         let (turn, was_accepted) = (self.turn_hypotheses.present_turn(), outcome.is_accepted());
         let outcome = self.turn_hypotheses.decide(&self.settings, (track, frame), outcome, seconds);
         if self.turn_hypotheses.present_turn() != turn || outcome.is_accepted() != was_accepted {
-            self.history.begin_anew();
+            self.history = self.history.begun_anew();
         }
         if outcome.is_accepted() && track.add_to_turn_profile(outline, &outcome, frame) {
             track.refute_turn();
@@ -314,11 +314,12 @@ impl MotionFilter {
         self.history.dynamics.as_ref().map(DynamicsFilter::weights)
     }
 
-    pub(super) fn replace(&mut self, track: Track, time: f64, phase: Phase) {
+    /// Takes another track, and what its motion has been as far as that is known of it.
+    pub(super) fn replace(&mut self, track: Track, history: MotionHistory, time: f64, phase: Phase) {
         self.track = Some(track);
+        self.history = history;
         self.clock.of_track = time;
         self.phase = phase;
-        self.history.begin_anew();
         self.repeated.forget_steps();
     }
 

@@ -25,7 +25,7 @@ impl MotionFilter {
         self.search_memory.landmarks = Landmarks::of(outline);
         self.search_memory.symmetry = 1;
         self.begin_window(time, outline, &track);
-        self.replace(track, time, Phase::Acquiring);
+        self.replace(track, MotionHistory::default(), time, Phase::Acquiring);
         self.clock.last_frame = time;
         (self.counts.rejected_in_a_row, self.counts.hidden_in_a_row) = (0, 0);
         self.search_memory.unfound.clear();
@@ -36,7 +36,7 @@ impl MotionFilter {
     pub(super) fn begin_window(&mut self, time: f64, outline: &Outline, track: &Track) {
         self.window = InitialisationWindow::begin(time, outline, track);
         self.turn_hypotheses = TurnHypotheses::default();
-        (self.history, self.motion_changed) = (MotionHistory::default(), false);
+        self.motion_changed = false;
         self.counts.begin_track();
     }
 
