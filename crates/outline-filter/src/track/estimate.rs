@@ -1,5 +1,5 @@
 //! What a track says of the motion.
-use freeform_estimate::{MotionEstimate, MotionState, NormalisedState, PointVelocity, is_worth};
+use freeform_estimate::{MotionEstimate, MotionState, NormalisedState, is_worth};
 use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterKind, ParameterVector, logarithm, map_point};
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Point2, SVector, Vector2};
 
@@ -241,27 +241,6 @@ impl Track {
         Some(state.into())
     }
 
-    /// Velocity of the object's centroid in a state of this track; `None` where it is not worth stating.
-    pub(crate) fn velocity_of_centroid(&self, state: &MotionState) -> Option<PointVelocity> {
-        if self.hides_perspective() {
-            return None;
-        }
-        let velocity = state.velocity_of(&(self.reference.origin + self.reference.radius * self.map.centroid().coords));
-        let span = self.belief.memory.shortest(self.belief.parameter_count());
-        let unit = self.reference.time_unit;
-        let worth = |deviation: &f64| self.is_worth(*deviation * unit, span, self.reference.radius);
-        velocity.standard_deviations().iter().all(worth).then_some(velocity)
-    }
-
-    /// Whether the outline does not show some of the perspective, as an ellipse does not: nor does it show which point of the body is where then.
-    fn hides_perspective(&self) -> bool {
-        let hidden = self.hidden_rates(TurnOfPose::AsTheOutlineShows);
-        hidden
-            .iter()
-            .zip(self.model().parameter_kinds())
-            .any(|(hidden, kind)| *hidden && *kind == ParameterKind::Perspective)
-    }
-
     /// Whether another track of the same object has come to the same pose and motion: their difference, normalised, is shorter than `near`, and
     /// within [`DIFFERENT`] deviations by the joint covariance of pose and motion.
     pub(crate) fn has_met(&self, other: &Self, near: f64) -> bool {
@@ -286,14 +265,14 @@ impl Track {
     }
 
     /// Whether the standard deviation of a rate, over the time that it is known from, makes little of a displacement.
-    fn is_worth(&self, deviation: f64, span: f64, displacement: f64) -> bool {
+    pub(super) fn is_worth(&self, deviation: f64, span: f64, displacement: f64) -> bool {
         let memory = &self.belief.memory;
         is_worth(deviation, span.max(memory.span.min(STEPS_KNOWN * memory.step)), displacement)
     }
 
     /// Rates, and entries of the perspective, that take part in a motion about the centroid which the outline does not show, or in a turn that is
     /// ambiguous.
-    fn hidden_rates(&self, turn: TurnOfPose) -> [bool; MAX_PARAMETERS] {
+    pub(super) fn hidden_rates(&self, turn: TurnOfPose) -> [bool; MAX_PARAMETERS] {
         let (model, at) = (self.belief.model, self.centred_pose());
         let (change, kinds) = (at.about_centroid(model), model.parameter_kinds());
         let mut hidden = [false; MAX_PARAMETERS];

@@ -12,6 +12,7 @@ mod growth;
 #[cfg(test)]
 mod jacobians_tests;
 mod known_outline;
+mod middle;
 mod outcome;
 mod outline;
 mod remapping;

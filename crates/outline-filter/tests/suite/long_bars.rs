@@ -43,3 +43,29 @@ fn a_bar_that_a_border_cuts_goes_along_itself_as_its_end_and_its_mark_do() {
         assert!((moved - 4.0 * step).abs() < 0.5, "{step} pixels in a frame: {moved} after four");
     }
 }
+
+/// What a picture shows of a bar, bent along a large circle, that goes to the right by so many pixels from frame to frame: both ends are out of it.
+fn bent_bar(frame: u32, step: f64) -> Outline {
+    const RADIUS: f64 = 6000.0;
+    let moved = step * f64::from(frame);
+    // Points are seen at other places of the bar in each frame.
+    let side = |radius: f64| {
+        let points = (0..150).map(|i| {
+            let x = 2.0 * f64::from(i) + (1.7 * f64::from(frame)).rem_euclid(2.0);
+            let error = NOISE * (12.9 * f64::from(i) + 31.0 * f64::from(frame * frame) + radius).sin();
+            Point2::new(x, (radius.powi(2) - (x - 150.0 - moved).powi(2)).sqrt() - RADIUS + error)
+        });
+        OpenArc::new(points.collect()).expect("an arc")
+    };
+    Outline::Open(OpenOutline::new(vec![side(6020.0), side(5980.0)]).expect("arcs"))
+}
+
+#[test]
+fn how_fast_a_bent_bar_goes_along_itself_is_not_stated_of_its_middle_where_no_end_shows_it() {
+    let mut run = filter(MotionModel::Rigid);
+    for frame in 0..30_u32 {
+        run.step(f64::from(frame) / 30.0, &bent_bar(frame, 4.4)).expect("increasing times");
+    }
+    assert!(run.estimate().expect("a motion").parameters().any(|parameter| parameter.value.is_none()));
+    assert_eq!(run.velocity().map(|velocity| velocity.velocity), None);
+}

@@ -1,0 +1,44 @@
+//! The velocity of an object's middle, and what an outline does not show of it.
+use freeform_estimate::{MotionState, PointVelocity};
+use freeform_riccati::{ParameterKind, ProjectiveMotion, map_point};
+use nalgebra::Point2;
+
+use super::{Track, estimate::TurnOfPose};
+use crate::{map::NullDirection, tuning::null_space::MOVES_MIDDLE};
+
+impl Track {
+    /// Velocity of the object's centroid in a state of this track; `None` where it is not worth stating, or where the outline does not show it.
+    pub(crate) fn velocity_of_centroid(&self, state: &MotionState) -> Option<PointVelocity> {
+        if self.hides_perspective() || self.hides_middle() {
+            return None;
+        }
+        let velocity = state.velocity_of(&(self.reference.origin + self.reference.radius * self.map.centroid().coords));
+        let span = self.belief.memory.shortest(self.belief.parameter_count());
+        let unit = self.reference.time_unit;
+        let worth = |deviation: &f64| self.is_worth(*deviation * unit, span, self.reference.radius);
+        velocity.standard_deviations().iter().all(worth).then_some(velocity)
+    }
+
+    /// Whether the outline does not show some of the perspective, as an ellipse does not: nor does it show which point of the body is where then.
+    fn hides_perspective(&self) -> bool {
+        let hidden = self.hidden_rates(TurnOfPose::AsTheOutlineShows);
+        hidden
+            .iter()
+            .zip(self.model().parameter_kinds())
+            .any(|(hidden, kind)| *hidden && *kind == ParameterKind::Perspective)
+    }
+
+    /// Whether a motion that the outline does not show moves its middle, as a straight bar moves along itself, or a bent one about a centre far away.
+    /// Such a motion is held at none, with a deviation that says nothing of how far it may go. The turning of a disc about its middle leaves that.
+    fn hides_middle(&self) -> bool {
+        let (model, pose) = (self.model(), self.body_pose());
+        let cells = self.map.cells();
+        let moves_middle = |null: &NullDirection| {
+            let motion = ProjectiveMotion::of_generator(&model.generator(&null.direction[..model.parameter_count()]));
+            let squared = |place: &Point2<f64>| motion.velocity(&map_point(pose, place)).norm_squared();
+            let of_points = cells.iter().map(|cell| squared(&cell.centre)).sum::<f64>() / cells.len().max(1) as f64;
+            squared(&self.map.centroid()) > MOVES_MIDDLE * of_points
+        };
+        self.map.null_directions(model, pose).iter().any(moves_middle)
+    }
+}
