@@ -24,8 +24,9 @@ const WIDTH: u32 = 320;
 /// Height of the line of text above a row, in pixels.
 const TEXT_HEIGHT: u32 = 24;
 
-/// Draws the best ways of tracing: a row for each with its name, its score, and the outlines that it finds in pictures of the sequence.
-/// `candidates` has the best first, `base` the settings that they do not say.
+/// Draws the ways of tracing of the highest scores, in their order: a row for each with its name, its score, and the outlines that it finds in
+/// pictures of the sequence. The first of `candidates` is the one taken, which is always drawn, and marked: a simpler way may be preferred to one of a
+/// higher score. `base` has the settings that they do not say.
 #[must_use]
 pub fn candidate_sheet(
     preview: &PicturePreview,
@@ -33,16 +34,34 @@ pub fn candidate_sheet(
     candidates: &[TracingEvidence],
     name: impl Fn(&TracingEvidence) -> String,
 ) -> RgbImage {
-    let row = |(rank, candidate): (usize, &TracingEvidence)| {
-        (caption(rank, candidate, &name(candidate)), drawn(preview, base, candidate))
+    let row = |(rank, (place, candidate)): (usize, (usize, &TracingEvidence))| {
+        (caption(rank, candidate, &name(candidate), place == 0), drawn(preview, base, candidate))
     };
-    let rows: Vec<(String, Vec<RgbImage>)> = candidates.iter().take(WAYS).enumerate().map(row).collect();
+    let rows: Vec<(String, Vec<RgbImage>)> = by_score(candidates).into_iter().enumerate().map(row).collect();
     sheet(&rows)
 }
 
-fn caption(rank: usize, TracingEvidence { found, pictures, score, .. }: &TracingEvidence, name: &str) -> String {
+/// The ways that are drawn, with their places in the choice, the highest score first.
+fn by_score(candidates: &[TracingEvidence]) -> Vec<(usize, &TracingEvidence)> {
+    let mut ways: Vec<_> = candidates.iter().enumerate().collect();
+    ways.sort_by(|(_, a), (_, b)| b.score.total_cmp(&a.score));
+    if let Some(taken) = ways.iter().position(|(place, _)| *place == 0).filter(|rank| *rank >= WAYS) {
+        let taken = ways.remove(taken);
+        ways.insert(WAYS - 1, taken);
+    }
+    ways.truncate(WAYS);
+    ways
+}
+
+fn caption(
+    rank: usize,
+    TracingEvidence { found, pictures, score, .. }: &TracingEvidence,
+    name: &str,
+    is_taken: bool,
+) -> String {
     let score = short((score * 1000.0).round() / 1000.0);
-    format!("{}  {name}  score {score}  {found} of {pictures} pictures", rank + 1)
+    let taken = if is_taken { "  taken" } else { "" };
+    format!("{}  {name}  score {score}  {found} of {pictures} pictures{taken}", rank + 1)
 }
 
 /// Pictures of the sequence with the outlines that a way finds in them, in the size of the sheet.

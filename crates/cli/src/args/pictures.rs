@@ -79,7 +79,7 @@ pub(crate) struct PictureOptions {
     #[arg(long, value_enum)]
     pub(crate) contours: Option<ContoursChoice>,
 
-    /// Draw the ways of tracing that were tried, the best first: what each finds in pictures of the input
+    /// Draw the ways of tracing that were tried, the highest score first: what each finds in pictures of the input
     #[arg(long, value_name = "FILE.png")]
     pub(crate) candidates: Option<PathBuf>,
 
