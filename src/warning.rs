@@ -44,7 +44,10 @@ pub enum Warning {
     /// only if the object turns with its path (motion filter).
     RotationFromPath,
     /// The object was not seen in the last frames.
-    Lost,
+    Lost {
+        /// Time in seconds until which it was followed, if a motion was found.
+        last_known: Option<f64>,
+    },
     /// The object was lost and searched for in the last frames; the motion is the last one known.
     Reacquiring {
         /// Time in seconds when the motion was last known.
@@ -151,7 +154,7 @@ impl Warning {
     pub(crate) const fn order(&self) -> u8 {
         match self {
             Self::PointsOutOfOrder { .. } | Self::Diverged | Self::StateLost { .. } => 0,
-            Self::TooManyRejected { .. } | Self::Lost | Self::Reacquiring { .. } => 1,
+            Self::TooManyRejected { .. } | Self::Lost { .. } | Self::Reacquiring { .. } => 1,
             Self::OfTwoFrames | Self::Ambiguous(_) | Self::TwoPlanes(_) | Self::AmbiguousCorrespondence { .. } => 2,
             Self::WrongFamily { .. } | Self::PlaneMisfit { .. } | Self::AffineBias | Self::StandingEdge(_) => 3,
             Self::Aliases { .. } | Self::RotationFromPath => 4,
@@ -175,7 +178,7 @@ impl Warning {
             Self::NotKnown { .. } => "not_known",
             Self::RotationNotObservable { .. } => "rotation_not_observable",
             Self::RotationFromPath => "rotation_from_path",
-            Self::Lost => "lost",
+            Self::Lost { .. } => "lost",
             Self::Reacquiring { .. } => "reacquiring",
             Self::OfTwoFrames => "of_two_frames",
             Self::Restarted { .. } => "restarted",
@@ -220,13 +223,13 @@ impl fmt::Display for Warning {
                 write!(f, "rotation is not observable from these outlines; unknown: {}", parameters.join(", "))
             }
             Self::RotationFromPath => f.write_str(ROTATION_FROM_PATH),
-            Self::Lost => f.write_str("the object was lost at the end"),
+            Self::Lost { last_known } => write_lost(f, *last_known),
             Self::Reacquiring { last_known } => write_reacquiring(f, *last_known),
             Self::OfTwoFrames => f.write_str(OF_TWO_FRAMES),
             Self::Restarted { times } => write!(f, "the object was given up and started again {times} time(s)"),
             Self::FramesRejected { rejected, frames } => write!(f, "{rejected} of {frames} frames rejected"),
             Self::Ambiguous(ambiguity) => write_ambiguity(f, ambiguity),
-            Self::MotionChanged { dynamics } => f.write_str(change_of_motion(*dynamics)),
+            Self::MotionChanged { dynamics } => write_change(f, *dynamics),
             Self::TwoPlanes(ambiguity) => write_two_planes(f, ambiguity),
             Self::PlaneHardlyMoves { parameters } => {
                 let unknown = parameters.join(", ");
@@ -268,20 +271,22 @@ fn write_out_of_order(f: &mut fmt::Formatter<'_>, frame: u64, perimeters: f64) -
     )
 }
 
+fn write_lost(f: &mut fmt::Formatter<'_>, last_known: Option<f64>) -> fmt::Result {
+    f.write_str("the object was lost at the end")?;
+    let Some(time) = last_known.map(|time| significant(time, 4)) else { return Ok(()) };
+    write!(f, "; it was followed until {time} s: --trajectory and --trace have its last poses and motion")
+}
+
 fn write_reacquiring(f: &mut fmt::Formatter<'_>, last_known: f64) -> fmt::Result {
     let last_known = significant(last_known, 4);
     write!(f, "the object was lost and searched for at the end; its motion was last known at {last_known} s")
 }
 
-/// How the motion goes on at the end.
-const fn change_of_motion(dynamics: Option<Dynamics>) -> &'static str {
-    match dynamics {
-        Some(Dynamics::Velocity) => {
-            "the middle of the object moves at a constant velocity, not about a fixed point, so that b changes: the values are those at the end, --trajectory and --trace \
-             have them over time"
-        }
-        _ => "the motion changed: the values are those at the end, --trajectory and --trace have them over time",
-    }
+fn write_change(f: &mut fmt::Formatter<'_>, dynamics: Option<Dynamics>) -> fmt::Result {
+    let is_of_middle = dynamics == Some(Dynamics::Velocity);
+    let what = if is_of_middle { "b changes, as the object turns about no fixed point" } else { "the motion changed" };
+    let middle = if is_of_middle { ", v1 and v2 the velocity of its middle" } else { "" };
+    write!(f, "{what}: the values are those at the end{middle}; --trajectory and --trace have them over time")
 }
 
 fn write_two_planes(f: &mut fmt::Formatter<'_>, ambiguity: &PlaneAmbiguity) -> fmt::Result {

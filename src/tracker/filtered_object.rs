@@ -77,7 +77,7 @@ impl FilteredObject {
         if let (Phase::Acquiring, Some((time, _))) = (filter.phase(), last_known) {
             warnings.push(Warning::Reacquiring { last_known: *time });
         }
-        warnings.extend(of_following(filter));
+        warnings.extend(of_following(filter, last_known.map(|(time, _)| time)));
         warnings.extend(ambiguity.map(Warning::Ambiguous));
         if let Some(family) = filter.wrong_family() {
             warnings.push(Warning::WrongFamily { family, motion: filter.settings().model });

@@ -77,7 +77,7 @@ impl PlaneObject {
         if misfit > DOES_NOT_FIT {
             warnings.push(Warning::PlaneMisfit { excess: misfit });
         }
-        warnings.extend(of_following(follower));
+        warnings.extend(of_following(follower, None));
         warnings.sort_by_key(Warning::order);
         warnings
     }

@@ -140,7 +140,7 @@ mod tests {
         let unknown = ObjectResult::unknown("left", Method::Filter, MotionModel::Rigid);
         let (point, velocity, covariance) = (Point2::origin(), Vector2::x(), Matrix2::identity());
         let velocity = is_stated.then_some(PointVelocity { point, velocity, covariance });
-        let warnings = vec![Warning::Lost, Warning::Restarted { times: 1 }];
+        let warnings = vec![Warning::Lost { last_known: None }, Warning::Restarted { times: 1 }];
         ObjectResult { frames: accepted + 3, frames_rejected: 3, velocity, warnings, ..unknown }
             .of_doubtful_outlines()
             .of_doubtful_outlines()
@@ -162,7 +162,7 @@ mod tests {
 
     #[test]
     fn what_is_stated_of_two_frames_alone_is_warned_of_once_and_of_three_not() {
-        let (lost, restarted) = (Warning::Lost, Warning::Restarted { times: 1 });
+        let (lost, restarted) = (Warning::Lost { last_known: None }, Warning::Restarted { times: 1 });
         assert_eq!(warnings_of(2, true), [lost.clone(), Warning::OfTwoFrames, restarted.clone()]);
         assert_eq!(warnings_of(3, true), [lost.clone(), restarted.clone()]);
         assert_eq!(warnings_of(2, false), [lost, restarted]);

@@ -32,8 +32,9 @@ pub(super) fn unstated_of(estimate: &MotionEstimate) -> impl Iterator<Item = &'s
     estimate.parameters().filter(|p| p.value.is_none()).map(|p| p.name)
 }
 
-/// What is to be said of how an object was followed: it is lost, it was begun anew, or many of its frames do not fit.
-pub(super) fn of_following(filter: &MotionFilter) -> Vec<Warning> {
+/// What is to be said of how an object was followed: it is lost, with the time in seconds until which it was followed, it was begun anew, or many of
+/// its frames do not fit.
+pub(super) fn of_following(filter: &MotionFilter, last_known: Option<f64>) -> Vec<Warning> {
     let rejected = filter.frames_rejected();
     let frames = filter.frames_accepted() + rejected;
     let restarts = filter.restarts();
@@ -43,7 +44,7 @@ pub(super) fn of_following(filter: &MotionFilter) -> Vec<Warning> {
         _ => None,
     };
     let warnings = [
-        (filter.phase() == Phase::Lost).then_some(Warning::Lost),
+        (filter.phase() == Phase::Lost).then_some(Warning::Lost { last_known }),
         unstated,
         (restarts > 0).then_some(Warning::Restarted { times: restarts }),
         are_many.then_some(Warning::FramesRejected { rejected, frames }),

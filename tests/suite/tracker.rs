@@ -244,7 +244,7 @@ fn every_warning_has_a_code_of_its_own_in_snake_case_and_a_message_on_one_line()
         Warning::NotObservable { parameters: parameters() },
         Warning::NotKnown { parameters: parameters() },
         Warning::RotationNotObservable { parameters: parameters() },
-        Warning::Lost,
+        Warning::Lost { last_known: Some(1.0) },
         Warning::Reacquiring { last_known: 1.0 },
         Warning::Restarted { times: 1 },
         Warning::FramesRejected { rejected: 1, frames: 2 },

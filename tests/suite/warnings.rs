@@ -23,7 +23,7 @@ fn examples() -> Vec<Warning> {
         Warning::Diverged,
         Warning::StateLost { reason: "the file is truncated".to_owned() },
         Warning::TooManyRejected { rejected: 37, frames: 75 },
-        Warning::Lost,
+        Warning::Lost { last_known: Some(1.733) },
         Warning::Reacquiring { last_known: 1.733 },
         Warning::OfTwoFrames,
         Warning::Restarted { times: 2 },

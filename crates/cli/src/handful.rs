@@ -47,7 +47,7 @@ mod tests {
     fn of_many_warnings_the_first_are_told_and_the_others_counted_by_their_codes() {
         let warnings = |count: usize| -> Vec<Warning> {
             let restarted = (0..count.saturating_sub(2)).map(|times| Warning::Restarted { times });
-            restarted.chain([Warning::Lost, Warning::Diverged]).take(count).collect()
+            restarted.chain([Warning::Lost { last_known: None }, Warning::Diverged]).take(count).collect()
         };
         assert_eq!(lines_of(&warnings(0)), [""; 0]);
         assert_eq!(lines_of(&warnings(5)).len(), 5);

@@ -3,13 +3,14 @@ use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 
+use freeform_drawing::MeaningOfB;
 use freeform_motion::outline_io::{
     FilePoints, OutlineFile, OutlineFrame, OutlineReader, PictureSequence, PolygonSettings, ReadError, ReadErrorKind,
     TableFormat, VerticalAxis, labelme_files, out_of_number_order, read_comments,
 };
 use freeform_motion::{SimulatedMotion, outline_of_polygon};
 
-use crate::args::PictureOptions;
+use crate::args::{PictureOptions, TrackOptions};
 use crate::awaited::{Awaited, Waiting};
 use crate::failure::{Failure, note, plain, warn};
 use crate::picture_input::{ASSUMED_RATE, PictureInput};
@@ -42,6 +43,15 @@ enum Source {
 }
 
 impl Input {
+    /// What b of the motion is, by where its coordinates come from.
+    pub(crate) fn meaning_of_b(&self, options: &TrackOptions) -> MeaningOfB {
+        match self.pictures() {
+            _ if options.rectify.is_some() => MeaningOfB::in_plane(),
+            Some(pictures) => pictures.meaning_of_b(options.scale),
+            None => MeaningOfB::in_coordinates(options.scale),
+        }
+    }
+
     /// Opens CSV or pictures; standard input where the path is `-`. Names tell them apart, or what they begin with. A terminal shows
     /// that pictures are looked at, unless it is to be quiet.
     pub(crate) fn open(

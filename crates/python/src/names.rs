@@ -74,7 +74,7 @@ pub(crate) fn wrong_family_name(family: WrongFamily) -> &'static str {
 
 pub(crate) fn unstated_name(unstated: Unstated) -> &'static str {
     match unstated {
-        Unstated::Lost => Warning::Lost.code(),
+        Unstated::Lost => Warning::Lost { last_known: None }.code(),
         Unstated::ManyRejected { rejected, frames } => Warning::TooManyRejected { rejected, frames }.code(),
     }
 }

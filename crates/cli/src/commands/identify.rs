@@ -161,11 +161,7 @@ impl<'a> Outcome<'a> {
         let results: Vec<ObjectResult> = tracker.results().into_iter().map(doubted).collect();
         let is_found = results.iter().any(|result| result.parameters().is_some());
         let failure = failure.or_else(|| (!is_found).then(|| nothing_found(&input.name, &results)));
-        let b = match input.pictures() {
-            _ if args.options.rectify.is_some() => MeaningOfB::in_plane(),
-            Some(pictures) => pictures.meaning_of_b(args.options.scale),
-            None => MeaningOfB::in_coordinates(args.options.scale),
-        };
+        let b = input.meaning_of_b(&args.options);
         Self { args, input, results, is_found, truth, b, left_out, failure }
     }
 

@@ -34,6 +34,7 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     let name = input.name.clone();
     let in_doubt = input.pictures().is_some_and(PictureInput::may_mistake_one_for_another) && !args.quiet;
     let stated = (following.settings().method(), following.settings().motion());
+    let b = input.meaning_of_b(&args.options);
     let mut sink = Sink::stdout();
     let mut accepted = 0_u64;
     let mut first_reason = None;
@@ -44,7 +45,7 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
                 if in_doubt {
                     warn_of_two_frames(left.result.clone());
                 }
-                return write_line(&mut sink, &closing_line(left).map_err(Failure::unusable)?);
+                return write_line(&mut sink, &closing_line(left, &b).map_err(Failure::unusable)?);
             }
         };
         if let Some(overlay) = &mut overlay {
@@ -56,7 +57,7 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
         }
         accepted += u64::from(observation.is_accepted());
         first_reason = first_reason.take().or_else(|| observation.rejection.clone());
-        write_line(&mut sink, &track_line(observation, stated).map_err(Failure::unusable)?)
+        write_line(&mut sink, &track_line(observation, stated, &b).map_err(Failure::unusable)?)
     })?;
     if in_doubt {
         following.results().into_iter().for_each(warn_of_two_frames);

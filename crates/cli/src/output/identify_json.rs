@@ -22,7 +22,7 @@ pub(crate) fn write_identify_json(
     left_out: &LeftOut,
     warnings: &[(TracingWarning, String)],
 ) -> io::Result<()> {
-    let objects: Vec<_> = results.iter().map(ObjectJson).collect();
+    let objects: Vec<_> = results.iter().map(|result| ObjectJson { result, meaning: b }).collect();
     let pictures = left_out.pictures.iter().map(|(frame, reason)| PictureJson { frame: *frame, reason }).collect();
     let left_out = LeftOutJson { count: left_out.count, pictures };
     let b = MeaningJson { point: b.point, unit: &b.unit, scale: b.scale.map(CameraScale::value) };
@@ -37,6 +37,7 @@ pub(crate) fn write_identify_json(
 pub(crate) fn track_line(
     observation: &Observation,
     (method, family): (Method, MotionFamily),
+    b: &MeaningOfB,
 ) -> serde_json::Result<String> {
     let estimate = observation.estimate.as_ref();
     serde_json::to_string(&TrackLine {
@@ -46,9 +47,9 @@ pub(crate) fn track_line(
         time: observation.time,
         phase: observation.phase.map(ObjectPhase::name),
         accepted: observation.is_accepted(),
-        parameters: observation
-            .parameters()
-            .map(|found| Parameters::new(found, &observation.aliases, |name| observation.not_stated(name))),
+        parameters: observation.parameters().map(|found| {
+            Parameters::new(found, (family, b), &observation.aliases, |name| observation.not_stated(name))
+        }),
         generator: estimate.and_then(generator_rows),
         velocity: observation.velocity.as_ref().map(VelocityJson),
         normal: observation.plane.as_deref().map(NormalJson::from),
@@ -62,7 +63,7 @@ pub(crate) fn track_line(
 }
 
 /// The last line of an object of a stream that has left, without its end.
-pub(crate) fn closing_line(Left { seen, result }: &Left) -> serde_json::Result<String> {
+pub(crate) fn closing_line(Left { seen, result }: &Left, b: &MeaningOfB) -> serde_json::Result<String> {
     serde_json::to_string(&TrackLine {
         schema: "freeform.track/1",
         object: &seen.object,
@@ -72,7 +73,7 @@ pub(crate) fn closing_line(Left { seen, result }: &Left) -> serde_json::Result<S
         accepted: false,
         parameters: result
             .parameters()
-            .map(|found| Parameters::new(found, &result.aliases, |name| result.not_stated(name))),
+            .map(|found| Parameters::new(found, (result.motion, b), &result.aliases, |name| result.not_stated(name))),
         generator: result.estimate.as_ref().and_then(generator_rows),
         velocity: result.velocity.as_ref().map(VelocityJson),
         normal: result.plane.as_deref().map(NormalJson::from),
@@ -187,11 +188,14 @@ impl<'a> From<&'a Ambiguity> for AmbiguityJson<'a> {
     }
 }
 
-struct ObjectJson<'a>(&'a ObjectResult);
+struct ObjectJson<'a> {
+    result: &'a ObjectResult,
+    meaning: &'a MeaningOfB,
+}
 
 impl Serialize for ObjectJson<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let Self(result) = self;
+        let Self { result, meaning } = self;
         let mut object =
             serializer.serialize_struct("Object", if result.motion == MotionFamily::Plane { 13 } else { 12 })?;
         object.serialize_field("object", &result.object)?;
@@ -201,10 +205,11 @@ impl Serialize for ObjectJson<'_> {
         object.serialize_field("frames_rejected", &result.frames_rejected)?;
         match result.parameters() {
             Some(found) => {
-                let parameters = Parameters::new(found, &result.aliases, |name| result.not_stated(name));
+                let parameters =
+                    Parameters::new(found, (result.motion, meaning), &result.aliases, |name| result.not_stated(name));
                 object.serialize_field("parameters", &parameters)?;
             }
-            None => object.serialize_field("parameters", &NoParameters(result))?,
+            None => object.serialize_field("parameters", &NoParameters { result, meaning })?,
         }
         object.serialize_field("generator", &result.estimate.as_ref().and_then(generator_rows))?;
         if result.motion == MotionFamily::Plane {
@@ -269,29 +274,37 @@ struct ParameterJson<'a> {
     aliases: Option<&'a [f64]>,
 }
 
-/// An estimate, with why a parameter is not stated, and other angular velocities that explain the outlines as well.
+/// An estimate, with the units of its parameters, why a parameter is not stated, and other angular velocities that explain the outlines as well.
 struct Parameters<'a> {
-    found: Vec<(ParameterEstimate, Option<NotStated>)>,
+    found: Vec<(ParameterEstimate, &'static str, Option<NotStated>)>,
     aliases: &'a [f64],
 }
 
 impl<'a> Parameters<'a> {
-    fn new(found: Vec<ParameterEstimate>, aliases: &'a [f64], why: impl Fn(&str) -> Option<NotStated>) -> Self {
-        Self { found: found.into_iter().map(|parameter| (parameter, why(parameter.name))).collect(), aliases }
+    fn new(
+        found: Vec<ParameterEstimate>,
+        (family, b): (MotionFamily, &MeaningOfB),
+        aliases: &'a [f64],
+        why: impl Fn(&str) -> Option<NotStated>,
+    ) -> Self {
+        let with_kinds = found.into_iter().zip(family.parameter_kinds());
+        let found = with_kinds
+            .map(|(parameter, kind)| (parameter, b.named_unit_of(*kind, parameter.unit), why(parameter.name)));
+        Self { found: found.collect(), aliases }
     }
 }
 
 impl Serialize for Parameters<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
-        for (parameter, reason) in &self.found {
+        for (parameter, unit, reason) in &self.found {
             let value = parameter.value;
             let json = ParameterJson {
                 value,
                 std: parameter.standard_deviation,
                 std_random: parameter.random_deviation,
                 std_systematic: parameter.systematic_deviation,
-                unit: parameter.unit,
+                unit,
                 observable: value.is_some(),
                 reason: reason.map(NotStated::name),
                 aliases: (parameter.name == "omega").then_some(self.aliases),
@@ -303,21 +316,26 @@ impl Serialize for Parameters<'_> {
 }
 
 /// The parameters of an object without a result.
-struct NoParameters<'a>(&'a ObjectResult);
+struct NoParameters<'a> {
+    result: &'a ObjectResult,
+    meaning: &'a MeaningOfB,
+}
 
 impl Serialize for NoParameters<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
-        let model = self.0.motion;
-        for (name, &unit) in model.parameter_names().iter().zip(model.units()) {
+        let Self { result, meaning } = self;
+        let model = result.motion;
+        let kinds = model.parameter_kinds();
+        for ((name, unit), kind) in model.parameter_names().iter().zip(model.units()).zip(kinds) {
             let nothing = ParameterJson {
                 value: None,
                 std: None,
                 std_random: None,
                 std_systematic: None,
-                unit,
+                unit: meaning.named_unit_of(*kind, unit),
                 observable: false,
-                reason: self.0.not_stated(name).map(NotStated::name),
+                reason: result.not_stated(name).map(NotStated::name),
                 aliases: (*name == "omega").then_some(&[]),
             };
             map.serialize_entry(name, &nothing)?;
@@ -345,7 +363,7 @@ mod tests {
             frames: 12,
             frames_rejected: 1,
             estimate: Some(estimate.with_unobservable(0).in_space(CameraScale::new(0.1).expect("a scale"))),
-            warnings: vec![Warning::AffineBias, Warning::Lost],
+            warnings: vec![Warning::AffineBias, Warning::Lost { last_known: Some(1.733) }],
             ..ObjectResult::unknown("left", Method::Adaptive, MotionModel::Rigid)
         };
         let mut text = Vec::new();
@@ -371,7 +389,7 @@ mod tests {
                 &Value::Null,
                 &json!([
                     {"code": "affine_bias", "message": Warning::AffineBias.to_string()},
-                    {"code": "lost", "message": "the object was lost at the end"},
+                    {"code": "lost", "message": "the object was lost at the end; it was followed until 1.733 s: --trajectory and --trace have its last poses and motion"},
                 ])
             )
         );

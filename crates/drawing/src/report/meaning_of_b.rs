@@ -31,6 +31,12 @@ impl MeaningOfB {
         if kind == ParameterKind::Velocity { self.short_unit } else { unit }
     }
 
+    /// The unit of a parameter where lengths without a name have none either, as in JSON: `1/s` of a velocity in coordinates of a file, `px/s` in pictures.
+    #[must_use]
+    pub fn named_unit_of(&self, kind: ParameterKind, unit: &'static str) -> &'static str {
+        if self.short_unit == LENGTHS { unit } else { self.unit_of(kind, unit) }
+    }
+
     /// In the coordinates of a file.
     #[must_use]
     pub fn in_coordinates(scale: Option<CameraScale>) -> Self {

@@ -268,7 +268,9 @@ mod tests {
         ] {
             assert!(with(note).is_silent());
         }
-        assert!(!with(Warning::Lost).is_silent() && !with(Warning::Restarted { times: 1 }).is_silent());
+        assert!(
+            !with(Warning::Lost { last_known: None }).is_silent() && !with(Warning::Restarted { times: 1 }).is_silent()
+        );
     }
 
     #[test]
