@@ -163,8 +163,11 @@ impl Player<'_> {
         }
         let width = significant(view.high.x - view.low.x, 3);
         let _ = match self.b.length_unit() {
-            "lengths" => write!(told, " The picture is {width} wide in the unit of the coordinates."),
-            unit => write!(told, " The picture is {width} {unit} wide."),
+            "lengths" => write!(
+                told,
+                " The part shown, with what surrounds the outlines, is {width} wide in the unit of the coordinates."
+            ),
+            unit => write!(told, " The part shown, with what surrounds the outlines, is {width} {unit} wide."),
         };
         told
     }
