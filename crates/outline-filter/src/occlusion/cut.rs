@@ -1,4 +1,6 @@
 //! Outlines without the points that lie along an edge.
+use std::ops::Range;
+
 use freeform_curve_fit::{OpenArc, OpenOutline, Outline, OutlineError};
 use nalgebra::Point2;
 
@@ -54,9 +56,13 @@ fn numbers_of_arcs(
         }
     }
     if !closed {
-        return runs(0..count, |i| is_left[i]);
+        return runs(0..count, |i| is_left[i]).map(Iterator::collect).collect();
     }
-    runs_all_round(count, |i| is_left[i]).unwrap_or_else(|| vec![(0..=count).map(|i| i % count).collect()])
+    let round = |run: Range<usize>| run.map(|i| i % count).collect();
+    match runs_all_round(count, |i| is_left[i]) {
+        Some(runs) => runs.map(round).collect(),
+        None => vec![round(0..count + 1)],
+    }
 }
 
 #[cfg(test)]

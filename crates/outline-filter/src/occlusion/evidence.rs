@@ -2,9 +2,10 @@
 use nalgebra::Point2;
 
 use super::{
+    buffers::{EvidenceBuffers, LeftOut},
     line::{Line, longest_straight},
     places::{Foot, Places, median, runs_all_round},
-    registration::{Moved, registered},
+    registration::{Moved, RegistrationBuffers, registered},
 };
 use crate::tuning::occlusion::{
     AGREES, FEWEST_STRAIGHT, FITS_OF_LINE, GAIN_OF_PART, LEAST_GAIN, LEAST_REST, MOST_OF_LINE, MOST_SCATTER,
@@ -12,16 +13,23 @@ use crate::tuning::occlusion::{
 };
 
 /// A straight part of a contour that has stayed where it was in an earlier frame.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Stayed {
     pub(super) line: Line,
-    /// Its places, by their numbers.
-    places: Vec<usize>,
+    /// Its first place, by the number, and how many it has, all round.
+    first: usize,
+    count: usize,
 }
 
 impl Stayed {
-    pub(super) fn points(&self, contour: &Places) -> Vec<Point2<f64>> {
-        self.places.iter().map(|i| contour.point(*i)).collect()
+    /// Its places, by their numbers.
+    fn places(&self, contour: &Places) -> impl Iterator<Item = usize> + use<> {
+        let all = contour.len();
+        (self.first..self.first + self.count).map(move |i| i % all)
+    }
+
+    pub(super) fn points<'a>(&self, contour: &'a Places) -> impl Iterator<Item = Point2<f64>> + use<'a> {
+        self.places(contour).map(|i| contour.point(i))
     }
 }
 
@@ -30,12 +38,14 @@ pub(super) struct Pair<'a> {
     now: &'a Places,
     before: &'a Places,
     noise: f64,
-    feet: Vec<Foot>,
+    feet: &'a [Foot],
 }
 
 impl<'a> Pair<'a> {
-    pub(super) fn new(now: &'a Places, before: &'a Places, noise: f64) -> Self {
-        Self { now, before, noise, feet: now.iter().map(|p| before.nearest(&p)).collect() }
+    pub(super) fn new(now: &'a Places, before: &'a Places, noise: f64, feet: &'a mut Vec<Foot>) -> Self {
+        feet.clear();
+        feet.extend(now.iter().map(|p| before.nearest(&p)));
+        Self { now, before, noise, feet }
     }
 
     fn has_stayed(&self, i: usize) -> bool {
@@ -43,8 +53,9 @@ impl<'a> Pair<'a> {
     }
 
     /// How far those places have moved that have not stayed, by their median.
-    pub(super) fn displacement(&self) -> f64 {
-        median(self.feet.iter().map(|foot| foot.distance).filter(|distance| *distance >= AGREES * self.noise).collect())
+    pub(super) fn displacement(&self, values: &mut Vec<f64>) -> f64 {
+        let distances = self.feet.iter().map(|foot| foot.distance);
+        median(distances.filter(|distance| *distance >= AGREES * self.noise), values)
     }
 
     /// Whether so much of the contour has moved that what stayed tells something.
@@ -53,62 +64,71 @@ impl<'a> Pair<'a> {
         moved as f64 >= MOVED_SHARE * self.now.len() as f64
     }
 
-    /// Which places of both contours lie along lines, of an edge each: where it was seen now, and in the earlier frame.
-    fn along(&self, lines: &[[Line; 2]]) -> [Vec<bool>; 2] {
-        let is_near =
-            |p: &Point2<f64>, of: usize| lines.iter().any(|lines| lines[of].distance(p).abs() < AGREES * self.noise);
-        [self.now.iter().map(|p| is_near(&p, 0)).collect(), self.before.iter().map(|p| is_near(&p, 1)).collect()]
+    /// Which of the straight parts that have stayed are not of the object, each judged without the edges that are `known`. Two that hide each other,
+    /// as both stay where the rest moves, are judged without both; only where that rest is most of the contour, as it is not where something moves
+    /// in front of an object at rest.
+    pub(super) fn judge(&self, known: &[[Line; 2]], buffers: &mut EvidenceBuffers) {
+        let EvidenceBuffers { parts, shown, left_out, registration, .. } = buffers;
+        shown.clear();
+        for part in parts.iter() {
+            self.leave_out(std::slice::from_ref(part), known, left_out);
+            if self.is_not_of_object(part, left_out, registration) {
+                shown.push(*part);
+            }
+        }
+        if !shown.is_empty() || parts.len() != 2 {
+            return;
+        }
+        self.leave_out(parts, known, left_out);
+        let rest = left_out.now.iter().filter(|is_out| !**is_out).count();
+        if rest as f64 >= LEAST_REST * self.now.len() as f64
+            && parts.iter().all(|part| self.is_not_of_object(part, left_out, registration))
+        {
+            shown.extend_from_slice(parts);
+        }
     }
 
-    /// The straight parts that have stayed and are not of the object, each judged without the edges that are `known`. Two that hide each other, as both
-    /// stay where the rest moves, are judged without both; only where that rest is most of the contour, as it is not where something moves in front
-    /// of an object at rest.
-    pub(super) fn shown(&self, parts: &[Stayed], known: &[[Line; 2]]) -> Vec<Stayed> {
-        let is_shown = |part: &&Stayed| self.is_not_of_object(part, &self.left_out(&[part], known));
-        let shown: Vec<_> = parts.iter().filter(is_shown).cloned().collect();
-        let [first, second] = parts else { return shown };
-        if !shown.is_empty() {
-            return shown;
-        }
-        let left_out = self.left_out(&[first, second], known);
-        let rest = left_out[0].iter().filter(|is_out| !**is_out).count();
-        if (rest as f64) < LEAST_REST * self.now.len() as f64 {
-            return Vec::new();
-        }
-        let are_shown = parts.iter().all(|part| self.is_not_of_object(part, &left_out));
-        if are_shown { parts.to_vec() } else { Vec::new() }
+    /// Leaves out the places of both contours that lie along parts that are judged, or along known edges: where these were seen now, and in the
+    /// earlier frame.
+    fn leave_out(&self, parts: &[Stayed], known: &[[Line; 2]], LeftOut { now, before }: &mut LeftOut) {
+        let lines = || parts.iter().map(|part| [part.line; 2]).chain(known.iter().copied());
+        let is_near = |p: &Point2<f64>, of: usize| lines().any(|line| line[of].distance(p).abs() < AGREES * self.noise);
+        now.clear();
+        now.extend(self.now.iter().map(|p| is_near(&p, 0)));
+        before.clear();
+        before.extend(self.before.iter().map(|p| is_near(&p, 1)));
+        parts.iter().flat_map(|part| part.places(self.now)).for_each(|i| now[i] = true);
     }
 
-    /// Which places of both contours lie along parts that are judged, or along known edges.
-    fn left_out(&self, parts: &[&Stayed], known: &[[Line; 2]]) -> [Vec<bool>; 2] {
-        let lines: Vec<_> = parts.iter().map(|part| [part.line; 2]).chain(known.iter().copied()).collect();
-        let [mut now, before] = self.along(&lines);
-        parts.iter().flat_map(|part| &part.places).for_each(|i| now[*i] = true);
-        [now, before]
-    }
-
-    /// The longest straight parts that have stayed, so many more as edges are known. None where what has moved is one straight line: that may be an edge
-    /// which moves in front of an object at rest, as well as a side of an object that comes out from behind an edge at rest.
-    pub(super) fn straight_parts(&self, known: usize) -> Vec<Stayed> {
-        if self.moved_is_straight() {
-            return Vec::new();
+    /// Looks for the longest straight parts that have stayed, so many more as edges are known. None where what has moved is one straight line: that
+    /// may be an edge which moves in front of an object at rest, as well as a side of an object that comes out from behind an edge at rest.
+    pub(super) fn find_straight_parts(&self, known: usize, buffers: &mut EvidenceBuffers) {
+        let EvidenceBuffers { points, parts, .. } = buffers;
+        parts.clear();
+        if self.moved_is_straight(points) {
+            return;
         }
-        let fewest = FEWEST_STRAIGHT.max((SHORTEST_SHARE * self.now.len() as f64) as usize);
-        let straight = |run: Vec<usize>| {
-            let points: Vec<_> = run.iter().map(|i| self.now.point(*i)).collect();
-            let (range, line) = longest_straight(&points, self.noise, fewest)?;
-            Some(Stayed { line, places: run[range].to_vec() })
+        let count = self.now.len();
+        let fewest = FEWEST_STRAIGHT.max((SHORTEST_SHARE * count as f64) as usize);
+        // One place between two that have stayed is of their run. None where all have.
+        let stayed = |i: usize| {
+            self.has_stayed(i) || self.has_stayed((i + 1) % count) && self.has_stayed((i + count - 1) % count)
         };
-        let mut parts: Vec<_> = self.runs_that_stayed().into_iter().filter_map(straight).collect();
-        parts.sort_by_key(|part| std::cmp::Reverse(part.places.len()));
+        for run in runs_all_round(count, stayed).into_iter().flatten() {
+            points.clear();
+            points.extend(run.clone().map(|i| self.now.point(i % count)));
+            if let Some((range, line)) = longest_straight(points, self.noise, fewest) {
+                parts.push(Stayed { line, first: run.start + range.start, count: range.len() });
+            }
+        }
+        parts.sort_by_key(|part| std::cmp::Reverse(part.count));
         parts.truncate(MOST_TRIED + known);
-        parts
     }
 
     /// Whether the places that have not stayed lie on one line, but for a few at its ends.
-    fn moved_is_straight(&self) -> bool {
-        let mut moved: Vec<_> =
-            (0..self.now.len()).filter(|i| !self.has_stayed(*i)).map(|i| self.now.point(i)).collect();
+    fn moved_is_straight(&self, moved: &mut Vec<Point2<f64>>) -> bool {
+        moved.clear();
+        moved.extend((0..self.now.len()).filter(|i| !self.has_stayed(*i)).map(|i| self.now.point(i)));
         let most = (MOST_OF_LINE * moved.len() as f64) as usize;
         for _ in 0..FITS_OF_LINE {
             let Some((line, _)) = Line::through(moved.iter().take(most).copied()) else { return false };
@@ -120,42 +140,35 @@ impl<'a> Pair<'a> {
         false
     }
 
-    /// Runs of neighbouring places that have stayed; one between two that have is of them. None where all have.
-    fn runs_that_stayed(&self) -> Vec<Vec<usize>> {
-        let count = self.now.len();
-        let stayed = |i: usize| {
-            self.has_stayed(i) || self.has_stayed((i + 1) % count) && self.has_stayed((i + count - 1) % count)
-        };
-        runs_all_round(count, stayed).unwrap_or_default()
-    }
-
     /// Whether a part that has stayed is not of the object. One rigid motion explains the rest of the contour. It takes the part off the earlier
     /// contour, so that it is no other side of the object that has come there; and no rigid motion of all explains as much.
-    fn is_not_of_object(&self, part: &Stayed, [out_now, out_before]: &[Vec<bool>; 2]) -> bool {
+    fn is_not_of_object(&self, part: &Stayed, out: &LeftOut, buffers: &mut RegistrationBuffers) -> bool {
         let Self { now, before, noise, .. } = *self;
-        let is_rest: Vec<_> = out_now.iter().map(|is_out| !is_out).collect();
-        let of_edge: Vec<_> = (0..before.len()).map(|i| out_before[i] && out_before[(i + 1) % before.len()]).collect();
-        let Some(rest) = registered((now, &is_rest), (before, &of_edge), noise, Moved::default()) else { return false };
-        let of_rest = || (0..now.len()).filter(|i| is_rest[*i]);
-        if rest.scale > MOST_SCATTER * noise || rest.agreement(of_rest()) < REST_AGREES {
+        let is_rest = |i: usize| !out.now[i];
+        let is_of_edge = |i: usize| out.before[i] && out.before[(i + 1) % before.len()];
+        let of_rest = || (0..now.len()).filter(|i| is_rest(*i));
+        let Some(rest) = registered((now, is_rest), (before, is_of_edge), noise, Moved::default(), buffers) else {
+            return false;
+        };
+        let (moved, scale, agreement) = (rest.moved, rest.scale, rest.agreement(of_rest()));
+        if scale > MOST_SCATTER * noise || agreement < REST_AGREES {
             return false;
         }
         let normal = part.line.normal();
-        let off = |i: &&usize| rest.distances[**i] > OFF * rest.scale.max(rest.deviation_of(**i, &normal));
-        let count = part.places.len() as f64;
-        if (part.places.iter().filter(off).count() as f64) < PART_DISAGREES * count {
+        let off = |i: &usize| rest.distances[*i] > OFF * scale.max(rest.deviation_of(*i, &normal));
+        let count = part.count as f64;
+        if (part.places(now).filter(off).count() as f64) < PART_DISAGREES * count {
             return false;
         }
         let all = now.len() as f64;
         let rest_count = of_rest().count() as f64;
-        let with_edge = (all - rest_count + rest.agreement(of_rest()) * rest_count) / all;
-        let [every, no_side] = [vec![true; now.len()], vec![false; before.len()]];
+        let with_edge = (all - rest_count + agreement * rest_count) / all;
         let of_one = |begun_with| {
-            let together = registered((now, &every), (before, &no_side), noise, begun_with)?;
-            let agrees = |distance: &&f64| **distance < AGREES * rest.scale;
+            let together = registered((now, |_| true), (before, |_| false), noise, begun_with, buffers)?;
+            let agrees = |distance: &&f64| **distance < AGREES * scale;
             Some(together.distances.iter().filter(agrees).count() as f64 / all)
         };
-        let one = [Moved::default(), rest.moved].into_iter().filter_map(of_one).fold(0.0, f64::max);
+        let one = [Moved::default(), moved].into_iter().filter_map(of_one).fold(0.0, f64::max);
         with_edge - one > LEAST_GAIN.max(GAIN_OF_PART * count / all)
     }
 }

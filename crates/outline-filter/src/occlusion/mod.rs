@@ -1,5 +1,6 @@
 //! Straight edges that cut the object off and stand still while it moves, or move otherwise: sides of what is in front of it, and of the picture,
 //! that nobody has declared. They are found from outlines alone, and the points along them are left out.
+mod buffers;
 mod cut;
 mod evidence;
 mod line;

@@ -1,7 +1,10 @@
 //! A contour as a few places: means of neighbouring points, which err less than these.
+use std::ops::Range;
+
 use freeform_curve_fit::Outline;
 use nalgebra::{Point2, Vector2};
 
+use super::buffers::room;
 use crate::{
     tuning::{
         measurement::MEDIAN_TO_DEVIATION,
@@ -11,7 +14,7 @@ use crate::{
 };
 
 /// Places along a closed contour.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Places {
     x: Vec<f64>,
@@ -34,20 +37,35 @@ impl Places {
     #[cfg(feature = "serde")]
     pub(super) const COUNTS: std::ops::RangeInclusive<usize> = 1..=u16::MAX as usize;
 
-    /// Of the boundary of an outline; `None` of one that is not closed, or has few points.
-    pub(super) fn of(outline: &Outline) -> Option<Self> {
-        let points = outline.pieces().next().filter(|piece| piece.closed)?.points;
+    /// None, with room for as many as a contour has.
+    pub(super) fn with_room() -> Self {
+        let mut none = Self::default();
+        room(&mut none.x, MOST_PLACES);
+        room(&mut none.y, MOST_PLACES);
+        none
+    }
+
+    /// Becomes those of the boundary of an outline; `false` of one that is not closed, or has few points.
+    pub(super) fn become_those_of(&mut self, outline: &Outline) -> bool {
+        let Some(piece) = outline.pieces().next().filter(|piece| piece.closed) else { return false };
+        let points = piece.points;
         let points_each = points.len().div_ceil(MOST_PLACES);
         let count = points.len() / points_each.max(1);
         if count < FEWEST_PLACES {
-            return None;
+            return false;
         }
         let mean = |k: usize| {
             let part = &points[k * points.len() / count..(k + 1) * points.len() / count];
             part.iter().fold(Vector2::zeros(), |sum, p| sum + p.coords) / part.len() as f64
         };
-        let (x, y) = (0..count).map(mean).map(|p| (p.x, p.y)).unzip();
-        Some(Self { x, y, points_each })
+        self.x.clear();
+        self.y.clear();
+        for p in (0..count).map(mean) {
+            self.x.push(p.x);
+            self.y.push(p.y);
+        }
+        self.points_each = points_each;
+        true
     }
 
     pub(super) fn len(&self) -> usize {
@@ -77,12 +95,12 @@ impl Places {
         (self.iter().map(|p| (p - centre).norm_squared()).sum::<f64>() / self.len() as f64).sqrt()
     }
 
-    fn spacing(&self) -> f64 {
-        median((0..self.len()).map(|i| (self.round(i, 1) - self.point(i)).norm()).collect())
+    fn spacing(&self, values: &mut Vec<f64>) -> f64 {
+        median((0..self.len()).map(|i| (self.round(i, 1) - self.point(i)).norm()), values)
     }
 
     /// Standard deviation of the places across the contour: by how much they lie off the cubic through their four neighbours, for most of them.
-    pub(super) fn noise(&self) -> f64 {
+    pub(super) fn noise(&self, values: &mut Vec<f64>) -> f64 {
         let off = |i: usize| {
             let [a, b, p, c, d] = [-2, -1, 0, 1, 2].map(|by| self.round(i, by).coords);
             let chord = c - b;
@@ -91,8 +109,8 @@ impl Places {
             if length > 0.0 { (error.y * chord.x - error.x * chord.y).abs() / length } else { 0.0 }
         };
         // The variance of the difference is 1 + (2 * 16 + 2) / 36 of that of a place.
-        let own = MEDIAN_TO_DEVIATION * median((0..self.len()).map(off).collect()) / (35.0_f64 / 18.0).sqrt();
-        own.max(LEAST_NOISE * self.size()).max(SPACING_NOISE * self.spacing())
+        let own = MEDIAN_TO_DEVIATION * median((0..self.len()).map(off), values) / (35.0_f64 / 18.0).sqrt();
+        own.max(LEAST_NOISE * self.size()).max(SPACING_NOISE * self.spacing(values))
     }
 
     /// Unit normal of a side, by the chord over the sides next to it.
@@ -143,21 +161,30 @@ impl Places {
     }
 }
 
-/// Median; 0 of none.
-pub(super) fn median(mut values: Vec<f64>) -> f64 {
-    crate::map::median(&mut values).unwrap_or(0.0)
+/// Median, put in order in a list; 0 of none.
+pub(super) fn median(of: impl Iterator<Item = f64>, values: &mut Vec<f64>) -> f64 {
+    values.clear();
+    values.extend(of);
+    crate::map::median(values).unwrap_or(0.0)
 }
 
 /// Runs of neighbours among numbers that are `in_run`.
-pub(super) fn runs(numbers: impl Iterator<Item = usize>, in_run: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {
-    let numbers: Vec<_> = numbers.collect();
-    numbers.split(|i| !in_run(*i)).filter(|run| !run.is_empty()).map(<[usize]>::to_vec).collect()
+pub(super) fn runs(numbers: Range<usize>, in_run: impl Fn(usize) -> bool) -> impl Iterator<Item = Range<usize>> {
+    let Range { start: mut next, end } = numbers;
+    std::iter::from_fn(move || {
+        let start = (next..end).find(|i| in_run(*i))?;
+        next = (start..end).find(|i| !in_run(*i)).unwrap_or(end);
+        Some(start..next)
+    })
 }
 
-/// As [`runs`], of so many numbers all round, the first of which follows the last; `None` where all are one run without an end.
-pub(super) fn runs_all_round(count: usize, in_run: impl Fn(usize) -> bool) -> Option<Vec<Vec<usize>>> {
+/// As [`runs`], of so many numbers all round, the first of which follows the last, counted on there; `None` where all are one run without an end.
+pub(super) fn runs_all_round(
+    count: usize,
+    in_run: impl Fn(usize) -> bool,
+) -> Option<impl Iterator<Item = Range<usize>>> {
     let first = (0..count).find(|i| !in_run(*i))?;
-    Some(runs((first..first + count).map(|i| i % count), in_run))
+    Some(runs(first..first + count, move |i| in_run(i % count)))
 }
 
 #[cfg(test)]
@@ -181,22 +208,35 @@ mod tests {
     #[test]
     fn the_noise_of_places_is_that_of_points_over_the_root_of_how_many_each_has() {
         for (count, points_each) in [(100, 1), (400, 4), (1200, 10)] {
-            let places = Places::of(&ellipse(count, 0.05)).expect("enough points");
+            let mut places = Places::default();
+            assert!(places.become_those_of(&ellipse(count, 0.05)), "enough points");
             assert_eq!(places.points_each, points_each);
             let expected = 0.05 / (points_each as f64).sqrt();
-            assert!((places.noise() / expected - 1.0).abs() < 0.35, "{count}: {} of {expected}", places.noise());
+            let noise = places.noise(&mut Vec::new());
+            assert!((noise / expected - 1.0).abs() < 0.35, "{count}: {noise} of {expected}");
         }
-        assert!(Places::of(&ellipse(FEWEST_PLACES - 1, 0.0)).is_none(), "too few points");
+        assert!(!Places::default().become_those_of(&ellipse(FEWEST_PLACES - 1, 0.0)), "too few points");
     }
 
     #[test]
     fn the_nearest_place_of_a_contour_is_nearest_of_all_sides() {
-        let places = Places::of(&ellipse(100, 0.0)).expect("enough points");
+        let mut places = Places::default();
+        assert!(places.become_those_of(&ellipse(100, 0.0)), "enough points");
         for p in [Point2::new(0.0, 0.0), Point2::new(3.0, 0.1), Point2::new(-1.0, 0.9), Point2::new(0.3, -2.0)] {
             let foot = places.nearest(&p);
             let least = (0..places.len()).map(|side| places.foot_on(side, &p).distance).fold(f64::INFINITY, f64::min);
             assert!((foot.distance - least).abs() < 1e-12, "{p}");
             assert!(((p - foot.point).norm() - foot.distance).abs() < 1e-12);
         }
+    }
+
+    #[test]
+    fn runs_all_round_go_on_behind_the_last_number() {
+        let all_round = |in_run: &[bool]| runs_all_round(in_run.len(), |i| in_run[i]).map(Iterator::collect);
+        let (no, yes) = (false, true);
+        assert_eq!(all_round(&[yes, no, no, yes, no, yes, yes]), Some(vec![3..4, 5..8]));
+        assert_eq!(all_round(&[no, no]), Some(vec![]));
+        assert_eq!(all_round(&[yes, yes]), None);
+        assert_eq!(runs(2..6, |i| i != 4).collect::<Vec<_>>(), vec![2..4, 5..6]);
     }
 }

@@ -1,10 +1,13 @@
 //! The rigid motion between two contours, of which parts are left out.
 use nalgebra::{Matrix3, Point2, Rotation2, Vector2, Vector3};
 
-use super::places::{Places, median};
+use super::{
+    buffers::room,
+    places::{Foot, Places, median},
+};
 use crate::tuning::{
     measurement::MEDIAN_TO_DEVIATION,
-    occlusion::{AGREES, FEWEST_REGISTERED, REGISTRATION_PRIOR, REGISTRATION_SETTLED, REGISTRATION_STEPS},
+    occlusion::{AGREES, FEWEST_REGISTERED, MOST_PLACES, REGISTRATION_PRIOR, REGISTRATION_SETTLED, REGISTRATION_STEPS},
     registration::TUKEY,
 };
 
@@ -17,12 +20,12 @@ pub(super) struct Moved {
 
 /// A contour moved onto another one.
 #[derive(Debug)]
-pub(super) struct Registered {
+pub(super) struct Registered<'a> {
     pub(super) moved: Moved,
     /// Where its places lie then.
-    pub(super) places: Vec<Point2<f64>>,
+    pub(super) places: &'a [Point2<f64>],
     /// How far each of them is from the other contour.
-    pub(super) distances: Vec<f64>,
+    pub(super) distances: &'a [f64],
     /// Standard deviation of the distances, no less than the noise.
     pub(super) scale: f64,
     centre: Point2<f64>,
@@ -30,7 +33,28 @@ pub(super) struct Registered {
     covariance: Matrix3<f64>,
 }
 
-impl Registered {
+/// What a registration fills, kept for the next one.
+#[derive(Debug, Clone, Default)]
+pub(super) struct RegistrationBuffers {
+    /// Places that are moved, each with the one on the other contour that it meets.
+    met: Vec<(Point2<f64>, Foot)>,
+    /// Values that a median is taken of.
+    values: Vec<f64>,
+    places: Vec<Point2<f64>>,
+    distances: Vec<f64>,
+}
+
+impl RegistrationBuffers {
+    pub(super) fn make_room(&mut self) {
+        let Self { met, values, places, distances } = self;
+        room(met, MOST_PLACES);
+        room(values, MOST_PLACES);
+        room(places, MOST_PLACES);
+        room(distances, MOST_PLACES);
+    }
+}
+
+impl Registered<'_> {
     /// Share of some places that lie on the other contour.
     pub(super) fn agreement(&self, places: impl Iterator<Item = usize>) -> f64 {
         let (mut agreeing, mut all) = (0.0, 0.0);
@@ -54,33 +78,34 @@ fn row(normal: &Vector2<f64>, lever: &Vector2<f64>, size: f64) -> Vector3<f64> {
 
 /// Moves those places of a contour that are `taken` onto another one, of which the sides `left_out` tell nothing: the nearest motion to the one begun
 /// with, by robust least squares of distances from sides. `None` where too few places are left.
-pub(super) fn registered(
-    (contour, taken): (&Places, &[bool]),
-    (other, left_out): (&Places, &[bool]),
+pub(super) fn registered<'a>(
+    (contour, taken): (&Places, impl Fn(usize) -> bool),
+    (other, left_out): (&Places, impl Fn(usize) -> bool),
     noise: f64,
     begun_with: Moved,
-) -> Option<Registered> {
+    buffers: &'a mut RegistrationBuffers,
+) -> Option<Registered<'a>> {
+    let RegistrationBuffers { met, values, places, distances } = buffers;
     let (centre, size) = (contour.centre(), contour.size());
     let mut moved = begun_with;
     let (mut scale, mut information) = (noise, Matrix3::zeros());
     let place = |moved: &Moved, p: &Point2<f64>| centre + Rotation2::new(moved.turn) * (p - centre) + moved.shift;
-    let mut met = Vec::new();
     for _ in 0..REGISTRATION_STEPS {
         met.clear();
-        for (p, _) in contour.iter().zip(taken).filter(|(_, taken)| **taken) {
+        for (_, p) in contour.iter().enumerate().filter(|(i, _)| taken(*i)) {
             let p = place(&moved, &p);
             let foot = other.nearest(&p);
-            if !left_out[foot.side] {
+            if !left_out(foot.side) {
                 met.push((p, foot));
             }
         }
         if met.len() < FEWEST_REGISTERED {
             return None;
         }
-        scale = noise.max(MEDIAN_TO_DEVIATION * median(met.iter().map(|(_, foot)| foot.distance).collect()));
+        scale = noise.max(MEDIAN_TO_DEVIATION * median(met.iter().map(|(_, foot)| foot.distance), values));
         information = Matrix3::identity() * (REGISTRATION_PRIOR * met.len() as f64);
         let mut right = Vector3::zeros();
-        for (p, foot) in &met {
+        for (p, foot) in met.iter() {
             let u = foot.distance / (TUKEY * scale);
             let normal = other.normal(foot.side);
             let row = row(&normal, &(p - centre - moved.shift), size);
@@ -95,8 +120,10 @@ pub(super) fn registered(
             break;
         }
     }
-    let places: Vec<_> = contour.iter().map(|p| place(&moved, &p)).collect();
-    let distances = places.iter().map(|p| other.nearest(p).distance).collect();
+    places.clear();
+    places.extend(contour.iter().map(|p| place(&moved, &p)));
+    distances.clear();
+    distances.extend(places.iter().map(|p| other.nearest(p).distance));
     let covariance = information.try_inverse()?;
     Some(Registered { moved, places, distances, scale, centre: centre + moved.shift, size, covariance })
 }
@@ -115,7 +142,9 @@ mod tests {
     }
 
     fn places(points: impl Iterator<Item = Point2<f64>>) -> Places {
-        Outline::closed(points.collect()).ok().and_then(|outline| Places::of(&outline)).expect("places")
+        let mut places = Places::default();
+        assert!(places.become_those_of(&Outline::closed(points.collect()).expect("an outline")), "places");
+        places
     }
 
     #[test]
@@ -124,12 +153,17 @@ mod tests {
         // A fifth of the places has stayed.
         let now = places((0..100).map(|i| if i < 20 { pebble(i) } else { moved * pebble(i) }));
         let before = places((0..100).map(pebble));
-        let taken: Vec<_> = (0..100).map(|i| i >= 20).collect();
-        let left_out: Vec<_> = (0..100).map(|i| i < 20).collect();
-        let found = registered((&now, &taken), (&before, &left_out), 0.003, Moved::default()).expect("a motion");
-        assert!((20..100).all(|i| (found.places[i] - pebble(i)).norm() < 0.01), "back where they were");
-        assert!(found.agreement(20..100) > 0.99 && found.agreement(5..15) < 0.5);
-        assert!(found.deviation_of(50, &Vector2::x()) < 0.003);
-        assert!(registered((&now, &[false; 100]), (&before, &left_out), 0.003, Moved::default()).is_none());
+        let mut buffers = RegistrationBuffers::default();
+        let mut registered_of = |taken: fn(usize) -> bool| {
+            registered((&now, taken), (&before, |i| i < 20), 0.003, Moved::default(), &mut buffers).map(|found| {
+                let agreements = [found.agreement(20..100), found.agreement(5..15)];
+                (found.places.to_vec(), agreements, found.deviation_of(50, &Vector2::x()))
+            })
+        };
+        let (places, [of_rest, of_part], deviation) = registered_of(|i| i >= 20).expect("a motion");
+        assert!((20..100).all(|i| (places[i] - pebble(i)).norm() < 0.01), "back where they were");
+        assert!(of_rest > 0.99 && of_part < 0.5);
+        assert!(deviation < 0.003);
+        assert!(registered_of(|_| false).is_none());
     }
 }

@@ -70,25 +70,26 @@ impl Path {
 
     /// The path that lines seen agree on: a regression of where their middles lie across their mean direction; at rest unless they have moved beyond
     /// doubt. `None` where they do not agree.
-    pub(super) fn of(sightings: &[Sighting]) -> Option<Self> {
-        let last = sightings.last()?;
+    pub(super) fn of<'a>(sightings: &(impl Iterator<Item = &'a Sighting> + Clone)) -> Option<Self> {
+        let sightings = || sightings.clone();
+        let last = sightings().last()?;
         let aligned = |seen: &Sighting| seen.line.along * seen.line.along.dot(&last.line.along).signum();
-        let along = sightings.iter().map(aligned).sum::<Vector2<f64>>().try_normalize(0.0)?;
-        let count = sightings.len() as f64;
-        let mean = sightings.iter().map(|seen| seen.time).sum::<f64>() / count;
-        let through = sightings.iter().map(|seen| seen.middle().coords).sum::<Vector2<f64>>() / count;
+        let along = sightings().map(aligned).sum::<Vector2<f64>>().try_normalize(0.0)?;
+        let count = sightings().count() as f64;
+        let mean = sightings().map(|seen| seen.time).sum::<f64>() / count;
+        let through = sightings().map(|seen| seen.middle().coords).sum::<Vector2<f64>>() / count;
         let line = Line { through: through.into(), along };
         let (mut moment, mut square) = (0.0, 0.0);
-        for seen in sightings {
+        for seen in sightings() {
             let time = seen.time - mean;
             moment += time * line.distance(&seen.middle());
             square += time * time;
         }
         let slope = if square > 0.0 { moment / square } else { 0.0 };
         let moves = slope.abs() * square.sqrt() > DRIFTS * last.noise;
-        let [first, latest] = extent(sightings.iter().map(|seen| seen.time));
+        let [first, latest] = extent(sightings().map(|seen| seen.time));
         let path = Self { line, drift: if moves { slope } else { 0.0 }, time: mean, until: latest + (latest - first) };
-        sightings.iter().all(|seen| seen.is_of(&path.line_at(seen.time))).then_some(path)
+        sightings().all(|seen| seen.is_of(&path.line_at(seen.time))).then_some(path)
     }
 
     #[cfg(feature = "serde")]
@@ -120,7 +121,7 @@ mod tests {
             // Either way along is the same line.
             let ways = [Vector2::x(), -Vector2::x(), Vector2::x()];
             let all: Vec<_> = (0..3).map(|i| seen(times[i], offsets[i], ways[i])).collect();
-            Path::of(&all)
+            Path::of(&all.iter())
         };
         let standing = path_of([1.0, 1.004, 1.001]).expect("a line that stands still");
         assert!((offset_in(&standing, 1000.0) - 1.0).abs() < 0.005, "it stays there");
@@ -129,6 +130,6 @@ mod tests {
         assert!((offset_in(&moving, 1000.0) - 1.4).abs() < 1e-9, "it is held where nothing has shown it for long");
         assert!(path_of([1.0, 1.3, 1.1]).is_none(), "there and back");
         let turned = [seen(0.0, 1.0, Vector2::x()), seen(1.0, 1.0, Vector2::new(0.8, 0.6))];
-        assert!(Path::of(&turned).is_none(), "another direction");
+        assert!(Path::of(&turned.iter()).is_none(), "another direction");
     }
 }

@@ -5,6 +5,7 @@ use freeform_curve_fit::Outline;
 use nalgebra::Point2;
 
 use super::{
+    buffers::LookBuffers,
     cut::without,
     evidence::{Pair, Stayed},
     line::Line,
@@ -65,7 +66,7 @@ impl Edge {
     /// Follows the line where another pair shows it.
     fn follow(&mut self, seen: Sighting) {
         push_last(&mut self.sightings, seen, MOST_KEPT);
-        if let Some(path) = Path::of(&self.sightings) {
+        if let Some(path) = Path::of(&self.sightings.iter()) {
             self.path = path;
         }
         self.crossed = 0;
@@ -110,6 +111,8 @@ pub(crate) struct StandingEdges {
     key: Option<Key>,
     sightings: Vec<Sighting>,
     edges: Vec<Edge>,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    buffers: LookBuffers,
 }
 
 impl StandingEdges {
@@ -127,9 +130,19 @@ impl StandingEdges {
         if self.frame < self.next_look || is_idle {
             return false;
         }
-        let Some(places) = Places::of(outline) else { return false };
-        push_last(&mut self.noises, places.noise(), NOISES);
-        let noise = median(self.noises.clone());
+        let mut places = self.buffers.contours.pop().unwrap_or_else(Places::with_room);
+        if !places.become_those_of(outline) {
+            self.buffers.contours.push(places);
+            return false;
+        }
+        self.look_at(places)
+    }
+
+    fn look_at(&mut self, places: Places) -> bool {
+        self.buffers.make_room();
+        let LookBuffers { contours, values, feet, evidence } = &mut self.buffers;
+        push_last(&mut self.noises, places.noise(values), NOISES);
+        let noise = median(self.noises.iter().copied(), values);
         self.looks_in_vain += 1;
         let Some(key) = &mut self.key else {
             self.begin_pair(places);
@@ -137,8 +150,8 @@ impl StandingEdges {
         };
         key.looks += 1;
         let elapsed = self.frame - key.frame;
-        let pair = Pair::new(&places, &key.places, noise);
-        let displacement = pair.displacement();
+        let pair = Pair::new(&places, &key.places, noise, feet);
+        let displacement = pair.displacement(values);
         let needed = (FURTHER * key.compared_at).max(MOVED * noise);
         if !pair.has_moved() || displacement < needed {
             // By when it has moved by as much if it goes on like this.
@@ -146,29 +159,35 @@ impl StandingEdges {
             self.next_look = self.frame + (wait as usize).clamp(1, LONGEST_WAIT);
             if elapsed > LONGEST_PAIR {
                 self.begin_pair(places);
+            } else {
+                contours.push(places);
             }
             return false;
         }
         key.compared_at = displacement;
         self.next_look = self.frame + 1;
-        let parts = pair.straight_parts(self.edges.len());
-        let is_done = parts.is_empty() || displacement > FARTHEST * places.size();
-        let work = LOOKS_PER_PART * parts.len();
+        pair.find_straight_parts(self.edges.len(), evidence);
+        let is_done = evidence.parts.is_empty() || displacement > FARTHEST * places.size();
+        let work = LOOKS_PER_PART * evidence.parts.len();
         key.looks += work;
         self.looks_in_vain += work;
-        let known: Vec<_> = self.edges.iter().map(|edge| [time, key.time].map(|t| edge.path.line_at(t))).collect();
-        let shown = pair.shown(&parts, &known);
+        let known: Vec<_> = self.edges.iter().map(|edge| [self.time, key.time].map(|t| edge.path.line_at(t))).collect();
+        pair.judge(&known, evidence);
         let mut is_new = false;
-        for (i, part) in shown.iter().enumerate() {
-            let seen = self.sighting(part, (&places, noise));
+        let shows = evidence.shown.len();
+        for i in 0..shows {
+            let shown = &self.buffers.evidence.shown;
+            let seen = self.sighting(&shown[i], (&places, noise));
             // Two parts of one line say no more than the longer one: a pair counts once.
             if !shown[..i].iter().any(|longer| seen.is_of(&longer.line)) {
                 is_new |= self.see(seen);
             }
         }
-        if is_done || !shown.is_empty() {
+        if is_done || shows > 0 {
             self.drop_crossed(&places, noise);
-            self.end_pair(places, !shown.is_empty());
+            self.end_pair(places, shows > 0);
+        } else {
+            self.buffers.contours.push(places);
         }
         is_new
     }
@@ -183,7 +202,8 @@ impl StandingEdges {
     }
 
     fn begin_pair(&mut self, places: Places) {
-        self.key = Some(Key { places, frame: self.frame, time: self.time, compared_at: 0.0, looks: 0 });
+        let key = Key { places, frame: self.frame, time: self.time, compared_at: 0.0, looks: 0 };
+        self.buffers.contours.extend(self.key.replace(key).map(|before| before.places));
         self.next_look = self.frame + 1;
     }
 
@@ -197,14 +217,13 @@ impl StandingEdges {
         if self.looks_in_vain < ATTENTIVE {
             self.begin_pair(places);
         } else {
-            self.key = None;
+            self.buffers.contours.extend(self.key.take().map(|key| key.places).into_iter().chain([places]));
             self.next_look = self.frame + (FRAMES_PER_LOOK * looks).min(LONGEST_PAUSE);
         }
     }
 
     fn sighting(&self, part: &Stayed, (places, noise): (&Places, f64)) -> Sighting {
-        let points = part.points(places);
-        let reach = extent(points.iter().map(|p| part.line.place(p)));
+        let reach = extent(part.points(places).map(|p| part.line.place(&p)));
         let (time, pair, points_each) = (self.time, self.pairs, places.points_each);
         Sighting { time, pair, line: part.line, reach, noise, points_each }
     }
@@ -295,27 +314,31 @@ impl StandingEdges {
     }
 }
 
-/// Adds to the last values of a list.
+/// Adds to the last values of a list, which has room for all of them from the first on.
 fn push_last<T>(list: &mut Vec<T>, value: T, most: usize) {
     if list.len() == most {
         list.remove(0);
     }
+    list.reserve_exact(most - list.len());
     list.push(value);
 }
 
 /// The edge that the last of some pairs shows, if enough before it show the same line, at rest or moving at a constant velocity.
 fn confirmed(sightings: &[Sighting]) -> Option<Edge> {
     let last = sightings.last()?;
-    let along: Vec<_> = sightings.iter().filter(|seen| seen.is_along(&last.line)).collect();
-    let standing = along.iter().filter(|seen| seen.is_of(&last.line)).map(|seen| (*seen).clone()).collect();
-    let latest = along[along.len().saturating_sub(PAIRS)..].iter().map(|seen| (*seen).clone()).collect();
-    let of = |sightings: Vec<Sighting>| {
-        let path = Path::of(&sightings).filter(|_| sightings.len() >= PAIRS)?;
-        let line = path.line_at(last.time);
-        let [from, to] = extent(last.reach.iter().map(|place| line.place(&last.line.at(*place)))).map(|x| line.at(x));
-        Some(Edge { shown: StandingEdge { from, to, since: last.time }, sightings, path, crossed: 0 })
-    };
-    of(standing).or_else(|| of(latest))
+    let along = || sightings.iter().filter(|seen| seen.is_along(&last.line));
+    let standing = along().filter(|seen| seen.is_of(&last.line));
+    let latest = along().skip(along().count().saturating_sub(PAIRS));
+    edge_of(&standing, last).or_else(|| edge_of(&latest, last))
+}
+
+/// The edge that some pairs show, if they are enough, as far as the last one shows it.
+fn edge_of<'a>(sightings: &(impl Iterator<Item = &'a Sighting> + Clone), last: &Sighting) -> Option<Edge> {
+    let path = Path::of(sightings).filter(|_| sightings.clone().count() >= PAIRS)?;
+    let line = path.line_at(last.time);
+    let [from, to] = extent(last.reach.iter().map(|place| line.place(&last.line.at(*place)))).map(|x| line.at(x));
+    let sightings = sightings.clone().cloned().collect();
+    Some(Edge { shown: StandingEdge { from, to, since: last.time }, sightings, path, crossed: 0 })
 }
 
 #[cfg(all(test, feature = "serde"))]

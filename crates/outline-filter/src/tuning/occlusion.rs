@@ -24,6 +24,8 @@ pub(crate) const FARTHEST: f64 = 0.35;
 pub(crate) const SHORTEST_SHARE: f64 = 0.08;
 /// Fewest places of a straight part: a line leaves four of them to say that it is one.
 pub(crate) const FEWEST_STRAIGHT: usize = 6;
+/// Most straight parts of one contour: one place at least lies between two.
+pub(crate) const MOST_STRAIGHT: usize = MOST_PLACES / (FEWEST_STRAIGHT + 1);
 /// Places of a straight part scatter by this many deviations at most where it is looked for. Few scatter by less than many.
 pub(crate) const SEED: f64 = 1.3;
 /// As [`SEED`], of all of a straight part.
