@@ -80,9 +80,14 @@ impl<const N: usize> Hypothesis<N> {
                 let of_shared: [f64; N] = std::array::from_fn(|i| if i < shared { share } else { 0.0 });
                 for (j, (entries, of_other)) in columns {
                     let (mut column, by_column) = ([0.0; N], share * apart[j]);
-                    let counts = if j < shared { 1.0 } else { 0.0 };
-                    for i in 0..N {
-                        column[i] = of_shared[i] * counts * of_other[i] + own * (entries[i] + by_column * apart[i]);
+                    if j < shared {
+                        for i in 0..N {
+                            column[i] = of_shared[i] * of_other[i] + own * (entries[i] + by_column * apart[i]);
+                        }
+                    } else {
+                        for i in 0..N {
+                            column[i] = own * entries[i];
+                        }
                     }
                     *entries = column;
                 }

@@ -4,10 +4,16 @@
 //! `(W^-1 + P)^-1 = (I + W P)^-1 W = T T'`, where `T = L C^-T` and `C C' = I + L' P L`. That is never singular, also where W is, and has the
 //! determinant of `I + W P`. The covariance loses `H H'`, where H are its columns of the pose times T: it stays symmetric bit by bit.
 use super::{
-    centred::{CentredDeviations, CentredMatrix, CentredVector},
+    centred::{CentredDeviations, CentredMatrix, CentredVector, LARGEST},
     hypothesis::{CentredMeasurement, Hypothesis, Innovation},
 };
-use crate::{tuning::dynamics as tuning, vectors::vectorised};
+use crate::{
+    tuning::dynamics as tuning,
+    vectors::{LANES, vectorised},
+};
+
+/// Vectors of a column of the largest state.
+const MOST_FOURS: usize = (3 * LARGEST).div_ceil(LANES);
 
 /// Root L of the information W on a pose of k parameters, `W = L L'`, a lower triangle. What W says next to nothing of has none.
 pub(super) fn root_of(information: &CentredMatrix, k: usize) -> CentredMatrix {
@@ -177,16 +183,35 @@ fn correct<const K: usize, const N: usize>(
         }
     }
     *mean = moved;
-    // The columns of what a hypothesis has no entries for are none, and stay so.
-    for (j, entries) in covariance.iter_mut().enumerate() {
-        let mut column = *entries;
-        for gain in &gain {
-            let factor = gain[j];
-            for i in 0..N {
-                column[i] -= gain[i] * factor;
+    // The columns of what a hypothesis has no entries for are none, and stay so. Entries below the diagonal are taken from above it: of each column
+    // the first are worked out, four at a time, as far as the four that hold its diagonal.
+    let mut by_four = [[[0.0; LANES]; K]; MOST_FOURS];
+    for l in 0..K {
+        let fours = gain[l].as_chunks::<LANES>().0;
+        for c in 0..N / LANES {
+            by_four[c][l] = fours[c];
+        }
+    }
+    for j in 0..N {
+        let mut factors = [0.0; K];
+        for l in 0..K {
+            factors[l] = gain[l][j];
+        }
+        let fours = covariance[j].as_chunks_mut::<LANES>().0;
+        for c in 0..(j / LANES + 1).min(N / LANES) {
+            let mut left = fours[c];
+            for l in 0..K {
+                for lane in 0..LANES {
+                    left[lane] -= by_four[c][l][lane] * factors[l];
+                }
+            }
+            fours[c] = left;
+        }
+        for i in N - N % LANES..=j {
+            for l in 0..K {
+                covariance[j][i] -= gain[l][i] * factors[l];
             }
         }
-        *entries = column;
     }
     // What is rounded in one half only would grow from frame to frame.
     for j in 1..N {
@@ -203,7 +228,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::dynamics::{centred::LARGEST, course::Course};
+    use crate::dynamics::course::Course;
 
     /// Largest difference from the plain way, in units of what is there: `(I + W P)^-1 W` by elimination, for information of a rank on a pose of K
     /// parameters.

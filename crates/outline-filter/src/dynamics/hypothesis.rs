@@ -2,7 +2,7 @@
 use freeform_riccati::{MotionModel, map_point};
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 
-use crate::tuning::dynamics as tuning;
+use crate::{tuning::dynamics as tuning, vectors::vectorised};
 
 use super::{
     centred::{CentredMatrix, CentredPose, CentredVector, LARGEST, as_map, carry, centred_generator, parts},
@@ -119,12 +119,20 @@ impl<const N: usize> Hypothesis<N> {
             MotionModel::Projective if self.predict_in_perspective(step) => {}
             MotionModel::Affine | MotionModel::Projective => return false,
         }
-        // A sum is finite only if all of its members are.
-        let mut sum: [f64; N] = self.mean.into();
-        for column in &self.covariance.data.0 {
-            (0..N).for_each(|i| sum[i] += column[i]);
-        }
-        sum.iter().sum::<f64>().is_finite()
+        let (mean, covariance) = (&self.mean.data.0[0], &self.covariance.data.0);
+        vectorised(
+            #[inline(always)]
+            || {
+                // A sum is finite only if all of its members are.
+                let mut sum = *mean;
+                for column in covariance {
+                    for i in 0..N {
+                        sum[i] += column[i];
+                    }
+                }
+                sum.iter().sum::<f64>().is_finite()
+            },
+        )
     }
 
     /// The plain way, for all models but projective motion; whether the numbers allow it. Where turns and growth commute there is

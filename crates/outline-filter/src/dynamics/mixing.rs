@@ -196,9 +196,14 @@ impl<const N: usize> Pooled<N> {
                     let of_known: [f64; N] = std::array::from_fn(|i| if i < known { share } else { 0.0 });
                     for (j, (entries, own)) in (first..N).zip(covariance.iter_mut().zip(of_source)) {
                         let (mut column, by_column) = ([0.0; N], share * apart[j]);
-                        let counts = if j < known { 1.0 } else { 0.0 };
-                        for i in 0..N {
-                            column[i] = entries[i] + of_known[i] * counts * own[i] + by_column * apart[i];
+                        if j < known {
+                            for i in 0..N {
+                                column[i] = entries[i] + of_known[i] * own[i] + by_column * apart[i];
+                            }
+                        } else {
+                            for i in 0..N {
+                                column[i] = entries[i] + by_column * apart[i];
+                            }
                         }
                         *entries = column;
                     }
