@@ -2,14 +2,13 @@
 use nalgebra::Point2;
 
 use super::{
-    buffers::{EvidenceBuffers, LeftOut},
     line::{Line, longest_straight},
-    places::{Foot, Places, median, runs_all_round},
+    places::{Foot, Places, clear_with_room, median, runs_all_round},
     registration::{Moved, RegistrationBuffers, registered},
 };
 use crate::tuning::occlusion::{
-    AGREES, FEWEST_STRAIGHT, FITS_OF_LINE, GAIN_OF_PART, LEAST_GAIN, LEAST_REST, MOST_OF_LINE, MOST_SCATTER,
-    MOST_TRIED, MOVED_SHARE, OFF, PART_DISAGREES, REST_AGREES, SHORTEST_SHARE,
+    AGREES, FEWEST_STRAIGHT, FITS_OF_LINE, GAIN_OF_PART, LEAST_GAIN, LEAST_REST, MOST_OF_LINE, MOST_PLACES,
+    MOST_SCATTER, MOST_STRAIGHT, MOST_TRIED, MOVED_SHARE, OFF, PART_DISAGREES, REST_AGREES, SHORTEST_SHARE,
 };
 
 /// A straight part of a contour that has stayed where it was in an earlier frame.
@@ -30,6 +29,37 @@ impl Stayed {
 
     pub(super) fn points<'a>(&self, contour: &'a Places) -> impl Iterator<Item = Point2<f64>> + use<'a> {
         self.places(contour).map(|i| contour.point(i))
+    }
+}
+
+/// What straight parts are looked for and judged with.
+#[derive(Debug, Clone, Default)]
+pub(super) struct EvidenceBuffers {
+    /// Of a run, or of all that has moved.
+    points: Vec<Point2<f64>>,
+    pub(super) parts: Vec<Stayed>,
+    /// Those of them that are not of the object.
+    pub(super) shown: Vec<Stayed>,
+    left_out: LeftOut,
+    registration: RegistrationBuffers,
+}
+
+/// Which places of a contour, and of the earlier one, are left out.
+#[derive(Debug, Clone, Default)]
+struct LeftOut {
+    now: Vec<bool>,
+    before: Vec<bool>,
+}
+
+impl EvidenceBuffers {
+    pub(super) fn make_room(&mut self) {
+        let Self { points, parts, shown, left_out, registration } = self;
+        clear_with_room(points, MOST_PLACES);
+        clear_with_room(parts, MOST_STRAIGHT);
+        clear_with_room(shown, MOST_STRAIGHT);
+        clear_with_room(&mut left_out.now, MOST_PLACES);
+        clear_with_room(&mut left_out.before, MOST_PLACES);
+        registration.make_room();
     }
 }
 

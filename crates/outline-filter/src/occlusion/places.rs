@@ -4,7 +4,6 @@ use std::ops::Range;
 use freeform_curve_fit::Outline;
 use nalgebra::{Point2, Vector2};
 
-use super::buffers::room;
 use crate::{
     tuning::{
         measurement::MEDIAN_TO_DEVIATION,
@@ -40,13 +39,13 @@ impl Places {
     /// None, with room for as many as a contour has.
     pub(super) fn with_room() -> Self {
         let mut none = Self::default();
-        room(&mut none.x, MOST_PLACES);
-        room(&mut none.y, MOST_PLACES);
+        clear_with_room(&mut none.x, MOST_PLACES);
+        clear_with_room(&mut none.y, MOST_PLACES);
         none
     }
 
-    /// Becomes those of the boundary of an outline; `false` of one that is not closed, or has few points.
-    pub(super) fn become_those_of(&mut self, outline: &Outline) -> bool {
+    /// Takes instead those of the boundary of an outline; `false` of one that is not closed, or has few points.
+    pub(super) fn refill_from(&mut self, outline: &Outline) -> bool {
         let Some(piece) = outline.pieces().next().filter(|piece| piece.closed) else { return false };
         let points = piece.points;
         let points_each = points.len().div_ceil(MOST_PLACES);
@@ -161,6 +160,12 @@ impl Places {
     }
 }
 
+/// Empties a list and makes room in it for so many values.
+pub(super) fn clear_with_room<T>(list: &mut Vec<T>, most: usize) {
+    list.clear();
+    list.reserve_exact(most);
+}
+
 /// Median, put in order in a list; 0 of none.
 pub(super) fn median(of: impl Iterator<Item = f64>, values: &mut Vec<f64>) -> f64 {
     values.clear();
@@ -209,19 +214,19 @@ mod tests {
     fn the_noise_of_places_is_that_of_points_over_the_root_of_how_many_each_has() {
         for (count, points_each) in [(100, 1), (400, 4), (1200, 10)] {
             let mut places = Places::default();
-            assert!(places.become_those_of(&ellipse(count, 0.05)), "enough points");
+            assert!(places.refill_from(&ellipse(count, 0.05)), "enough points");
             assert_eq!(places.points_each, points_each);
             let expected = 0.05 / (points_each as f64).sqrt();
             let noise = places.noise(&mut Vec::new());
             assert!((noise / expected - 1.0).abs() < 0.35, "{count}: {noise} of {expected}");
         }
-        assert!(!Places::default().become_those_of(&ellipse(FEWEST_PLACES - 1, 0.0)), "too few points");
+        assert!(!Places::default().refill_from(&ellipse(FEWEST_PLACES - 1, 0.0)), "too few points");
     }
 
     #[test]
     fn the_nearest_place_of_a_contour_is_nearest_of_all_sides() {
         let mut places = Places::default();
-        assert!(places.become_those_of(&ellipse(100, 0.0)), "enough points");
+        assert!(places.refill_from(&ellipse(100, 0.0)), "enough points");
         for p in [Point2::new(0.0, 0.0), Point2::new(3.0, 0.1), Point2::new(-1.0, 0.9), Point2::new(0.3, -2.0)] {
             let foot = places.nearest(&p);
             let least = (0..places.len()).map(|side| places.foot_on(side, &p).distance).fold(f64::INFINITY, f64::min);

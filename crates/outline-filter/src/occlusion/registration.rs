@@ -1,10 +1,7 @@
 //! The rigid motion between two contours, of which parts are left out.
 use nalgebra::{Matrix3, Point2, Rotation2, Vector2, Vector3};
 
-use super::{
-    buffers::room,
-    places::{Foot, Places, median},
-};
+use super::places::{Foot, Places, clear_with_room, median};
 use crate::tuning::{
     measurement::MEDIAN_TO_DEVIATION,
     occlusion::{AGREES, FEWEST_REGISTERED, MOST_PLACES, REGISTRATION_PRIOR, REGISTRATION_SETTLED, REGISTRATION_STEPS},
@@ -47,10 +44,10 @@ pub(super) struct RegistrationBuffers {
 impl RegistrationBuffers {
     pub(super) fn make_room(&mut self) {
         let Self { met, values, places, distances } = self;
-        room(met, MOST_PLACES);
-        room(values, MOST_PLACES);
-        room(places, MOST_PLACES);
-        room(distances, MOST_PLACES);
+        clear_with_room(met, MOST_PLACES);
+        clear_with_room(values, MOST_PLACES);
+        clear_with_room(places, MOST_PLACES);
+        clear_with_room(distances, MOST_PLACES);
     }
 }
 
@@ -143,7 +140,7 @@ mod tests {
 
     fn places(points: impl Iterator<Item = Point2<f64>>) -> Places {
         let mut places = Places::default();
-        assert!(places.become_those_of(&Outline::closed(points.collect()).expect("an outline")), "places");
+        assert!(places.refill_from(&Outline::closed(points.collect()).expect("an outline")), "places");
         places
     }
 

@@ -131,7 +131,7 @@ impl StandingEdges {
             return false;
         }
         let mut places = self.buffers.contours.pop().unwrap_or_else(Places::with_room);
-        if !places.become_those_of(outline) {
+        if !places.refill_from(outline) {
             self.buffers.contours.push(places);
             return false;
         }
