@@ -3,6 +3,7 @@
 //!
 //! The hypotheses share the measurement of a frame: what it tells of the pose, with the offsets of the outline eliminated. They carry no
 //! outline of their own.
+mod accelerations;
 mod arrival;
 mod centred;
 mod combination;

@@ -316,8 +316,7 @@ impl MotionFilter {
 
     /// Takes another track, and what its motion has been as far as that is known of it.
     pub(super) fn replace(&mut self, track: Track, history: MotionHistory, time: f64, phase: Phase) {
-        self.track = Some(track);
-        self.history = history;
+        (self.track, self.history) = (Some(track), history);
         self.clock.of_track = time;
         self.phase = phase;
         self.repeated.forget_steps();
