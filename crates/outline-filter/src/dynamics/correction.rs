@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// Vectors of a column of the largest state.
-const MOST_FOURS: usize = (3 * LARGEST).div_ceil(LANES);
+const MOST_VECTORS: usize = (3 * LARGEST).div_ceil(LANES);
 
 /// Root L of the information W on a pose of k parameters, `W = L L'`, a lower triangle. What W says next to nothing of has none.
 pub(super) fn root_of(information: &CentredMatrix, k: usize) -> CentredMatrix {
@@ -183,13 +183,13 @@ fn correct<const K: usize, const N: usize>(
         }
     }
     *mean = moved;
-    // The columns of what a hypothesis has no entries for are none, and stay so. Entries below the diagonal are taken from above it: of each column
-    // the first are worked out, four at a time, as far as the four that hold its diagonal.
-    let mut by_four = [[[0.0; LANES]; K]; MOST_FOURS];
+    // The columns of what a hypothesis has no entries for are none, and stay so. Only the entries up to the diagonal
+    // are worked out, in whole vectors; those below it are taken from them.
+    let mut gain_vectors = [[[0.0; LANES]; K]; MOST_VECTORS];
     for l in 0..K {
-        let fours = gain[l].as_chunks::<LANES>().0;
+        let vectors = gain[l].as_chunks::<LANES>().0;
         for c in 0..N / LANES {
-            by_four[c][l] = fours[c];
+            gain_vectors[c][l] = vectors[c];
         }
     }
     for j in 0..N {
@@ -197,15 +197,15 @@ fn correct<const K: usize, const N: usize>(
         for l in 0..K {
             factors[l] = gain[l][j];
         }
-        let fours = covariance[j].as_chunks_mut::<LANES>().0;
+        let vectors = covariance[j].as_chunks_mut::<LANES>().0;
         for c in 0..(j / LANES + 1).min(N / LANES) {
-            let mut left = fours[c];
+            let mut left = vectors[c];
             for l in 0..K {
                 for lane in 0..LANES {
-                    left[lane] -= by_four[c][l][lane] * factors[l];
+                    left[lane] -= gain_vectors[c][l][lane] * factors[l];
                 }
             }
-            fours[c] = left;
+            vectors[c] = left;
         }
         for i in N - N % LANES..=j {
             for l in 0..K {
