@@ -1,8 +1,8 @@
 use nalgebra::Matrix2;
 
-/// The angle of the axis along which points or a region spread most, in rad, above -pi/2 and at most pi/2; its other end is as good.
+/// The angle of the axis along which points or a region spread most, in rad, from -pi/2 to pi/2; its other end is as good.
 ///
-/// `second_moments` are central and symmetric, in any unit: sums over the points or means. 0 where they are the same in all directions.
+/// `second_moments` are central and symmetric, of which the upper triangle is read, in any unit: sums over the points or means. 0 where they are the same in all directions.
 ///
 /// ```
 /// use freeform_curve_fit::principal_angle;

@@ -25,8 +25,8 @@ const WIDTH: u32 = 320;
 const TEXT_HEIGHT: u32 = 24;
 
 /// Draws the ways of tracing of the highest scores, in their order: a row for each with its name, its score, and the outlines that it finds in
-/// pictures of the sequence. The first of `candidates` is the one taken, which is always drawn, and marked: a simpler way may be preferred to one of a
-/// higher score. `base` has the settings that they do not say.
+/// pictures of the sequence. The first of `candidates` is the one taken, which is always drawn, and marked: a simpler way may be preferred to one
+/// of a higher score. `base` has the settings that they do not say.
 #[must_use]
 pub fn candidate_sheet(
     preview: &PicturePreview,

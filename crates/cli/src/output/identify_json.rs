@@ -288,8 +288,8 @@ impl<'a> Parameters<'a> {
         why: impl Fn(&str) -> Option<NotStated>,
     ) -> Self {
         let with_kinds = found.into_iter().zip(family.parameter_kinds());
-        let found = with_kinds
-            .map(|(parameter, kind)| (parameter, b.named_unit_of(*kind, parameter.unit), why(parameter.name)));
+        let found =
+            with_kinds.map(|(parameter, kind)| (parameter, b.unit_in_data(*kind, parameter.unit), why(parameter.name)));
         Self { found: found.collect(), aliases }
     }
 }
@@ -333,7 +333,7 @@ impl Serialize for NoParameters<'_> {
                 std: None,
                 std_random: None,
                 std_systematic: None,
-                unit: meaning.named_unit_of(*kind, unit),
+                unit: meaning.unit_in_data(*kind, unit),
                 observable: false,
                 reason: result.not_stated(name).map(NotStated::name),
                 aliases: (*name == "omega").then_some(&[]),

@@ -31,16 +31,17 @@ impl MeaningOfB {
         if kind == ParameterKind::Velocity { self.short_unit } else { unit }
     }
 
-    /// The unit of a parameter where lengths without a name have none either, as in JSON: `1/s` of a velocity in coordinates of a file, `px/s` in pictures.
+    /// The unit of a parameter as JSON has it: of a velocity `1/s` where the unit of length has no name, as in the coordinates of a file or after a
+    /// division by a camera scale, else that of a table, as `px/s`.
     #[must_use]
-    pub fn named_unit_of(&self, kind: ParameterKind, unit: &'static str) -> &'static str {
+    pub fn unit_in_data(&self, kind: ParameterKind, unit: &'static str) -> &'static str {
         if self.short_unit == LENGTHS { unit } else { self.unit_of(kind, unit) }
     }
 
     /// In the coordinates of a file.
     #[must_use]
     pub fn in_coordinates(scale: Option<CameraScale>) -> Self {
-        Self { point: "the origin of the coordinates", unit: "lengths/s".to_owned(), short_unit: LENGTHS, scale }
+        Self { point: "the origin of the coordinates", unit: LENGTHS.to_owned(), short_unit: LENGTHS, scale }
     }
 
     /// In the plane that pictures are rectified to.
