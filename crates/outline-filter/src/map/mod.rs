@@ -4,6 +4,7 @@ mod centring;
 mod chains;
 mod contour;
 mod contour_area;
+mod fixed_point;
 mod growth;
 mod local_fit;
 mod medians;

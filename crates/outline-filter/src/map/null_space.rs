@@ -82,7 +82,8 @@ impl Default for NullSpace {
 
 impl OutlineMap {
     /// The object's centroid in the body frame: the centroid of the area that the outline encloses, which a body of even thickness turns
-    /// about where nothing holds it; the centre of the cells where the outline is not closed.
+    /// about where nothing holds it; the centre of the cells where the outline is not closed; of an outline that does not show how these move,
+    /// the point that it does show, if there is one nearby.
     pub(crate) fn centroid(&self) -> Point2<f64> {
         self.null_space.centroid
     }
@@ -101,7 +102,6 @@ impl OutlineMap {
     /// After a frame that has not shown the turn about the object's centroid: marks it as not observable.
     pub(crate) fn hide_turn(&mut self, model: MotionModel) {
         let space = &mut self.null_space;
-        let Some(inverse) = space.frame.try_inverse() else { return };
         if !space.holds_turn(model) {
             space.turn = space.turn.after(TurnEvent::NotSeen);
             // What tells the turn is not to be trusted: the rest of the outline says what it cannot be told from. Its centre is what moves as is
@@ -113,7 +113,13 @@ impl OutlineMap {
                 space.centroid = centre;
                 return;
             }
-            space.in_body.push(model.parameters_of(&(space.frame * space.unit_turn(model) * inverse)));
+            let mut frame = space.frame;
+            // Beside other directions its part that is a shift would be one of theirs.
+            if space.in_body.is_empty() {
+                (frame.m13, frame.m23) = (space.centroid.x, space.centroid.y);
+            }
+            let Some(inverse) = frame.try_inverse() else { return };
+            space.in_body.push(model.parameters_of(&(frame * space.unit_turn(model) * inverse)));
         }
     }
 
@@ -149,11 +155,12 @@ impl OutlineMap {
     }
 
     /// Undoes [`hide_turn`](Self::hide_turn), so that it can be asked anew whether the turn is seen.
-    pub(crate) fn show_turn(&mut self) {
+    pub(crate) fn show_turn(&mut self, model: MotionModel) {
         let space = &mut self.null_space;
         if space.turn.is_hidden() && space.turn != TurnEvidence::Refuted {
             space.turn = space.turn.after(TurnEvent::AskedAnew);
             space.in_body.pop();
+            self.place_centroid(model);
         }
     }
 
@@ -184,7 +191,6 @@ impl OutlineMap {
             of_cells.push((across, count));
             add_square(&mut levers_of_noise, &along, variance / count, k);
         }
-        let centroid = Self::area_centroid(&contours).unwrap_or(centring.centroid);
         let of_places = self.levers_of_places(&contours, centring.spread());
         let noise = sigma / centring.spread();
         // Where the outline may be stretched, light that moves a hole looks like a stretch as well as like a turn.
@@ -231,9 +237,10 @@ impl OutlineMap {
                 space.in_body.push(model.parameters_of(&(to_body * generator * inverse)));
             }
         }
-        (space.frame, space.centroid, space.stretch) = (to_body, centroid, centring.stretch());
+        (space.frame, space.stretch) = (to_body, centring.stretch());
         space.turn = space.turn.after(TurnEvent::AskedAnew);
-        if space.turn == TurnEvidence::Refuted {
+        self.place_centroid(model);
+        if self.null_space.turn == TurnEvidence::Refuted {
             self.hide_turn(model);
         }
     }

@@ -208,9 +208,10 @@ impl MotionFilter {
     }
 
     /// Velocity of the object's centroid, that of the area within its known outline (the centre of its cells where that is not one closed
-    /// contour), at the time of [`state`](Self::state). It may be
-    /// known while the velocity `b` at the image origin is not, as for a circle. `None` if it is not known, if the motion is
-    /// [ambiguous](Self::ambiguity), or if [`estimate`](Self::estimate) is `None`.
+    /// contour), at the time of [`state`](Self::state). Where the outline does not show how that moves, it is of the point that it does show: the
+    /// centre of a disc of which half is seen. It may be
+    /// known while the velocity `b` at the image origin is not, as for a circle. `None` if it is not known, if no such point is nearby, if the
+    /// motion is [ambiguous](Self::ambiguity), or if [`estimate`](Self::estimate) is `None`.
     #[must_use]
     pub fn velocity(&self) -> Option<PointVelocity> {
         if self.turn_hypotheses.are_doubtful() || !self.is_stated() {

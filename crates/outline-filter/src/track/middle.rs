@@ -1,10 +1,8 @@
 //! The velocity of an object's middle, and what an outline does not show of it.
 use freeform_estimate::{MotionState, PointVelocity};
-use freeform_riccati::{ParameterKind, ProjectiveMotion, map_point};
-use nalgebra::Point2;
+use freeform_riccati::ParameterKind;
 
 use super::{Track, estimate::TurnOfPose};
-use crate::{map::NullDirection, tuning::null_space::MOVES_MIDDLE};
 
 impl Track {
     /// Velocity of the object's centroid in a state of this track; `None` where it is not worth stating, or where the outline does not show it.
@@ -29,16 +27,8 @@ impl Track {
     }
 
     /// Whether a motion that the outline does not show moves its middle, as a straight bar moves along itself, or a bent one about a centre far away.
-    /// Such a motion is held at none, with a deviation that says nothing of how far it may go. The turning of a disc about its middle leaves that.
+    /// Such a motion is held at none, with a deviation that says nothing of how far it may go. The turning of a disc leaves its middle where it is.
     fn hides_middle(&self) -> bool {
-        let (model, pose) = (self.model(), self.body_pose());
-        let cells = self.map.cells();
-        let moves_middle = |null: &NullDirection| {
-            let motion = ProjectiveMotion::of_generator(&model.generator(&null.direction[..model.parameter_count()]));
-            let squared = |place: &Point2<f64>| motion.velocity(&map_point(pose, place)).norm_squared();
-            let of_points = cells.iter().map(|cell| squared(&cell.centre)).sum::<f64>() / cells.len().max(1) as f64;
-            squared(&self.map.centroid()) > MOVES_MIDDLE * of_points
-        };
-        self.map.null_directions(model, pose).iter().any(moves_middle)
+        self.map.hides_motion_of_centroid(self.model())
     }
 }

@@ -361,7 +361,7 @@ impl Track {
     /// Undoes [`hide_turn`](Self::hide_turn), so that it can be asked anew whether the turn is seen.
     pub(crate) fn show_turn(&mut self) {
         if self.turn_evidence().is_hidden() {
-            Arc::make_mut(&mut self.map).show_turn();
+            Arc::make_mut(&mut self.map).show_turn(self.belief.model);
         }
     }
 

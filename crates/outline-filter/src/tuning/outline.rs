@@ -162,8 +162,8 @@ pub(crate) mod null_space {
     pub(crate) const TURNS_WITH: f64 = 1e-6;
     /// Share of the deviation of a velocity at the origin of the image that a rate which is not known may make: beyond, neither is known.
     pub(crate) const HANGS_ON: f64 = 0.5;
-    /// Squared speed of the middle in a motion that is not seen, in the mean of the points, from which on its velocity is not seen: more of that
-    /// motion moves the middle than turns the outline about it. A turn about the centre of a circle of which half is seen has two fifths.
+    /// Squared speed of the middle in motions that are not seen, in the mean of the points, up to which the point that they leave where it is takes
+    /// the place of the middle: beyond, it is no point of the outline's surroundings. The centre of a circle of which half is seen has two fifths.
     pub(crate) const MOVES_MIDDLE: f64 = 0.5;
     /// Variances of the places within an outline, in those of its cells, of a shape: a circle has a half, a comb or the letter T about one. Those of
     /// an outline that crosses itself are anything.

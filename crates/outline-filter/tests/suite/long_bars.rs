@@ -1,7 +1,8 @@
 //! Outlines that are mostly one straight side: little of them shows how far they have gone along it.
 use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
+use freeform_outline_filter::{MotionFilter, Phase};
 use freeform_riccati::MotionModel;
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 
 use crate::filter_support::filter;
 
@@ -44,28 +45,57 @@ fn a_bar_that_a_border_cuts_goes_along_itself_as_its_end_and_its_mark_do() {
     }
 }
 
-/// What a picture shows of a bar, bent along a large circle, that goes to the right by so many pixels from frame to frame: both ends are out of it.
-fn bent_bar(frame: u32, step: f64) -> Outline {
+/// What a picture shows of a bar, bent along a large circle, that goes to the right by so many pixels from frame to frame. Its left end is out of it;
+/// so is the right one, or it is this far to the right of the middle of the picture in the first frame.
+fn bent_bar(frame: u32, step: f64, right_end: Option<f64>) -> Outline {
     const RADIUS: f64 = 6000.0;
+    const MIDDLE: f64 = 150.0;
     let moved = step * f64::from(frame);
+    let error = |number: f64, of: f64| NOISE * (12.9 * number + 31.0 * f64::from(frame * frame) + of).sin();
     // Points are seen at other places of the bar in each frame.
     let side = |radius: f64| {
-        let points = (0..150).map(|i| {
-            let x = 2.0 * f64::from(i) + (1.7 * f64::from(frame)).rem_euclid(2.0);
-            let error = NOISE * (12.9 * f64::from(i) + 31.0 * f64::from(frame * frame) + radius).sin();
-            Point2::new(x, (radius.powi(2) - (x - 150.0 - moved).powi(2)).sqrt() - RADIUS + error)
-        });
-        OpenArc::new(points.collect()).expect("an arc")
+        let places = (0..150).map(move |i| 2.0 * f64::from(i) + (1.7 * f64::from(frame)).rem_euclid(2.0));
+        let seen = places.filter(move |x| right_end.is_none_or(|end| *x < MIDDLE + end + moved));
+        seen.map(move |x| {
+            let height = (radius.powi(2) - (x - MIDDLE - moved).powi(2)).sqrt() - RADIUS;
+            Point2::new(x, height + error(0.5 * x, radius))
+        })
     };
-    Outline::Open(OpenOutline::new(vec![side(6020.0), side(5980.0)]).expect("arcs"))
+    let arc = |points: Vec<Point2<f64>>| OpenArc::new(points).expect("an arc");
+    let [outer, inner] = [RADIUS + 20.0, RADIUS - 20.0];
+    let arcs = match right_end {
+        None => vec![arc(side(outer).collect()), arc(side(inner).collect())],
+        Some(end) => {
+            // Over 100 pixels the circle falls by less than a pixel.
+            let heights = (0..20).map(|i| 19.0 - 2.0 * f64::from(i));
+            let across = heights.map(|height| Point2::new(MIDDLE + end + moved + error(height, 3.0), height));
+            let back: Vec<_> = side(inner).collect();
+            vec![arc(side(outer).chain(across).chain(back.into_iter().rev()).collect())]
+        }
+    };
+    Outline::Open(OpenOutline::new(arcs).expect("arcs"))
+}
+
+/// A filter that has taken a second of such a bar.
+fn bent_bar_followed(step: f64, right_end: Option<f64>) -> MotionFilter {
+    let mut run = filter(MotionModel::Rigid);
+    for frame in 0..30_u32 {
+        run.step(f64::from(frame) / 30.0, &bent_bar(frame, step, right_end)).expect("increasing times");
+    }
+    assert_eq!((run.phase(), run.ambiguity()), (Phase::Tracking, None));
+    run
 }
 
 #[test]
 fn how_fast_a_bent_bar_goes_along_itself_is_not_stated_of_its_middle_where_no_end_shows_it() {
-    let mut run = filter(MotionModel::Rigid);
-    for frame in 0..30_u32 {
-        run.step(f64::from(frame) / 30.0, &bent_bar(frame, 4.4)).expect("increasing times");
-    }
+    let run = bent_bar_followed(4.4, None);
     assert!(run.estimate().expect("a motion").parameters().any(|parameter| parameter.value.is_none()));
     assert_eq!(run.velocity().map(|velocity| velocity.velocity), None);
+}
+
+#[test]
+fn how_fast_a_bent_bar_goes_along_itself_is_stated_where_an_end_shows_it() {
+    let velocity = bent_bar_followed(4.4, Some(-20.0)).velocity().expect("a velocity");
+    let (error, deviations) = (velocity.velocity - Vector2::new(132.0, 0.0), velocity.standard_deviations());
+    assert!(deviations.max() < 1.0 && error.component_div(&deviations).amax() < 4.0, "{error} +- {deviations}");
 }

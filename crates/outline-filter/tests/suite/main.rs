@@ -20,6 +20,7 @@ mod mask_rounding;
 mod moving_poses;
 mod near_symmetry;
 mod nearly_round;
+mod partly_seen;
 mod plane;
 mod point_deviations;
 mod projective_poses;

@@ -1,0 +1,108 @@
+//! Outlines of which so little is seen that motions leave it as it is: what is stated of the middle.
+use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
+use freeform_outline_filter::{MotionFilter, Phase};
+use freeform_riccati::MotionModel;
+use nalgebra::{Point2, Vector2};
+use rand::{RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
+
+use crate::filter_support::filter;
+
+const FRAMES: u32 = 30;
+const FRAME_RATE: f64 = 30.0;
+/// Standard deviation of the points, pixels.
+const NOISE: f64 = 0.2;
+/// How far apart points are, pixels.
+const SPACING: f64 = 1.5;
+/// Velocity of what is followed, pixels per second, and its place at the first frame.
+const VELOCITY: Vector2<f64> = Vector2::new(40.0, -25.0);
+const BEGIN: Vector2<f64> = Vector2::new(120.0, 160.0);
+
+/// A filter that has taken frames of open arcs, with noise of their own. `arcs` gives the points of the arcs at a time by how far along themselves
+/// their points have moved.
+fn followed(model: MotionModel, arcs: impl Fn(f64, f64) -> Vec<Vec<Vector2<f64>>>) -> MotionFilter {
+    let mut random = ChaCha8Rng::seed_from_u64(4);
+    let mut run = filter(model);
+    for frame in 0..FRAMES {
+        let time = f64::from(frame) / FRAME_RATE;
+        let along = SPACING * random.random::<f64>();
+        let mut noisy = |p: Vector2<f64>| p.map(|c| c + NOISE * random.sample::<f64, _>(StandardNormal));
+        let arcs = arcs(time, along)
+            .into_iter()
+            .map(|points| OpenArc::new(points.into_iter().map(|p| Point2::from(noisy(p))).collect()).expect("an arc"));
+        let outline = Outline::Open(OpenOutline::new(arcs.collect()).expect("arcs"));
+        run.step(time, &outline).expect("increasing times");
+    }
+    assert_eq!((run.phase(), run.ambiguity()), (Phase::Tracking, None));
+    run
+}
+
+/// Places along a length, from an offset on.
+fn places(length: f64, along: f64) -> impl DoubleEndedIterator<Item = f64> + Clone {
+    (0..(length / SPACING) as u32).map(move |i| along + SPACING * f64::from(i))
+}
+
+/// Which parameters are not stated.
+fn hidden(run: &MotionFilter) -> Vec<&'static str> {
+    run.estimate().expect("a motion").parameters().filter(|p| p.value.is_none()).map(|p| p.name).collect()
+}
+
+/// The velocity of a point that has moved as [`VELOCITY`] since the first frame, which is to be stated, and of this point.
+fn assert_states_velocity_of(point_at_first: Vector2<f64>, run: &MotionFilter, deviation: f64) {
+    let stated = run.velocity().expect("a velocity");
+    let deviations = stated.standard_deviations();
+    let point = point_at_first + f64::from(FRAMES - 1) / FRAME_RATE * VELOCITY;
+    assert!((stated.point.coords - point).norm() < 2.0, "of {} for {point}", stated.point);
+    assert!(deviations.max() < deviation, "{deviations}");
+    assert!(
+        (stated.velocity - VELOCITY).component_div(&deviations).amax() < 4.0,
+        "{} +- {deviations}",
+        stated.velocity
+    );
+}
+
+#[test]
+fn of_half_a_disc_the_velocity_of_its_centre_is_stated_since_nobody_knows_how_it_spins() {
+    const RADIUS: f64 = 50.0;
+    for model in [MotionModel::Rigid, MotionModel::Similarity] {
+        let run = followed(model, |time, along| {
+            let arc = places(std::f64::consts::PI * RADIUS, along)
+                .map(|s| Vector2::new((s / RADIUS).cos(), (s / RADIUS).sin()));
+            vec![arc.map(|normal| BEGIN + VELOCITY * time + RADIUS * normal).collect()]
+        });
+        assert_eq!(hidden(&run), ["omega", "b1", "b2"]);
+        assert_states_velocity_of(BEGIN, &run, 0.5);
+    }
+}
+
+#[test]
+fn of_a_corner_that_may_grow_the_velocity_of_its_vertex_is_stated_since_nobody_knows_how_its_sides_grow() {
+    let run = followed(MotionModel::Similarity, |time, along| {
+        let vertex = BEGIN + VELOCITY * time;
+        let side = places(60.0, along);
+        let left = side.clone().rev().map(|s| vertex + s * Vector2::new(0.8, 0.6));
+        vec![left.chain(side.map(|s| vertex + s * Vector2::new(-0.6, 0.8))).collect()]
+    });
+    assert_eq!(hidden(&run), ["sigma", "b1", "b2"]);
+    assert_states_velocity_of(BEGIN, &run, 0.5);
+}
+
+#[test]
+fn of_a_strip_without_ends_no_velocity_is_stated_whatever_family_moves_it() {
+    for model in [MotionModel::Rigid, MotionModel::Similarity, MotionModel::Affine] {
+        let run = followed(model, |time, along| {
+            let across = Vector2::new(-0.6, 0.8);
+            let side = |height: f64| {
+                // The picture shows it from x = 80 to x = 240, wherever it has moved to.
+                let middle = Vector2::new(160.0, 120.0 + VELOCITY.y * time);
+                places(160.0, along)
+                    .map(move |s| middle + (s - 80.0) * Vector2::new(0.8, 0.6) + height * across)
+                    .collect()
+            };
+            vec![side(-15.0), side(15.0)]
+        });
+        assert!(hidden(&run).ends_with(&["b1", "b2"]), "{model:?}: {:?}", hidden(&run));
+        assert_eq!(run.velocity(), None, "{model:?}");
+    }
+}
