@@ -58,23 +58,24 @@ impl Arrowhead {
         );
     }
 
-    /// Lets pose and motion, whose covariance is given, have changed at random, so that `after` is known of them. Offsets keep what they are known
+    /// Lets pose and motion have changed at random by a covariance, so that `after` is known of them. Offsets keep what they are known
     /// to be, and their regression on pose and motion; what they would come to know of each other is dropped.
-    pub(crate) fn add_covariance(&mut self, covariance: &StateMatrix, after: &StateMatrix) {
+    pub(crate) fn add_covariance(&mut self, added: &StateMatrix, after: &StateMatrix) {
         match self.k {
-            3 => self.add_covariance_sized::<6>(covariance, after),
-            4 => self.add_covariance_sized::<8>(covariance, after),
-            6 => self.add_covariance_sized::<12>(covariance, after),
-            _ => self.add_covariance_sized::<16>(covariance, after),
+            3 => self.add_covariance_sized::<6>(added, after),
+            4 => self.add_covariance_sized::<8>(added, after),
+            6 => self.add_covariance_sized::<12>(added, after),
+            _ => self.add_covariance_sized::<16>(added, after),
         }
     }
 
-    fn add_covariance_sized<const S: usize>(&mut self, covariance: &StateMatrix, after: &StateMatrix) {
-        // Before (x) given after (x'): x = gain x' + rest.
+    fn add_covariance_sized<const S: usize>(&mut self, added: &StateMatrix, after: &StateMatrix) {
+        // Before (x) given after (x'): x = gain x' + rest. Of a covariance P before, gain = P after and rest = P - gain P. Where next to nothing is
+        // known of a direction P is large, and nothing would be left of that difference but rounding.
         let of_size = |m: &StateMatrix| SMatrix::<f64, S, S>::from_fn(|i, j| m[(i, j)]);
-        let covariance = of_size(covariance);
-        let gain = covariance * of_size(after);
-        let rest = covariance - gain * covariance;
+        let added = of_size(added);
+        let gain = SMatrix::<f64, S, S>::identity() - added * of_size(after);
+        let rest = gain * added;
         let [gain, rest] = [gain, rest].map(rows::<S>);
         let (own, couplings) = self.cells.all_mut::<S>();
         vectorised(

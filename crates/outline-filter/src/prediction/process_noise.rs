@@ -85,7 +85,45 @@ impl Belief {
             // What a filter forgets at this rate in each step it remembers for steps over rate.
             *span *= known / (known + new);
         }
-        self.information.add_covariance(&covariance, &after);
+        self.information.add_covariance(added, &after);
         self.marginal = after;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use freeform_riccati::{MAX_PARAMETERS, MotionModel};
+
+    use super::*;
+    use crate::dense_filter::Problem;
+
+    /// As that of a bar along itself, a direction of which next to nothing is known is nearly, and not quite, one that is not shown.
+    #[test]
+    fn offsets_stay_known_where_a_direction_is_forgotten_that_has_told_nothing_of_them() {
+        let mut belief = Problem::of(MotionModel::Rigid, 8, 5).belief;
+        let k = belief.parameter_count();
+        let (mut direction, mut untold) = ([0.0; MAX_PARAMETERS], [0.0; MAX_PARAMETERS]);
+        direction[..k].copy_from_slice(&[-0.28, 0.768, -0.576]);
+        untold[..k].copy_from_slice(&[-0.28, 0.784, -0.554]);
+        for (_, coupling) in belief.information.cells.iter_mut() {
+            for of_block in coupling.chunks_mut(k).take(2) {
+                let along: f64 = of_block.iter().zip(&direction).map(|(c, d)| c * d).sum();
+                of_block.iter_mut().zip(&direction).for_each(|(c, d)| *c -= along * d);
+            }
+        }
+        // Pose and motion are known to a fiftieth, but to a hundred thousand along one direction.
+        let told_by_offsets = belief.information.with_outline_given() - belief.information.marginal();
+        let squared: f64 = untold.iter().map(|c| c * c).sum();
+        for (i, row) in belief.information.dense.iter_mut().enumerate().take(2 * k) {
+            for (j, entry) in row.iter_mut().enumerate().take(2 * k) {
+                let along = if i / k == j / k { untold[i % k] * untold[j % k] / squared } else { 0.0 };
+                *entry = told_by_offsets[(i, j)] + 2300.0 * (f64::from(u8::from(i == j)) - along) + 1e-10 * along;
+            }
+        }
+        belief.marginal = belief.information.marginal();
+        let before: Vec<f64> = belief.information.cells.own().to_vec();
+        belief.forget(&[NullDirection { direction, dual: direction }], 2.5e-7);
+        let kept = before.iter().zip(belief.information.cells.own()).map(|(before, after)| after / before);
+        kept.for_each(|kept| assert!((kept - 1.0).abs() < 0.01, "{kept}"));
     }
 }
