@@ -20,6 +20,12 @@ pub fn significant(value: f64, digits: usize) -> String {
     format!("{value:.decimals$}")
 }
 
+/// A time in seconds to a tenth of a millisecond, or with four significant digits where these say more.
+pub(crate) fn of_time(seconds: f64) -> String {
+    let text = if seconds.abs() < 1.0 { significant(seconds, 4) } else { format!("{seconds:.4}") };
+    text.parse::<f64>().map_or(text, |rounded| rounded.to_string())
+}
+
 /// Most digits of a value with a standard deviation.
 const MOST_DIGITS: i32 = 8;
 
@@ -52,7 +58,14 @@ pub fn short(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{short, significant, with_deviation};
+    use super::{of_time, short, significant, with_deviation};
+
+    #[test]
+    fn times_tell_frames_apart_however_late_they_are() {
+        let times = [1.733_333_3, 1234.6, 1_764_249_600.233_3, 0.033_333, 3.25e-8, 0.0, -12.5];
+        let written = ["1.7333", "1234.6", "1764249600.2333", "0.03333", "0.0000000325", "0", "-12.5"];
+        assert_eq!(times.map(of_time), written);
+    }
 
     #[test]
     fn numbers_keep_their_significant_digits() {

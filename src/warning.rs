@@ -5,7 +5,7 @@ use freeform_riccati::MotionModel;
 
 use crate::{
     frame_ranges::FrameRanges,
-    number::significant,
+    number::{of_time, significant},
     rejection::{FrameRejection, write_state_lost},
 };
 
@@ -45,7 +45,7 @@ pub enum Warning {
     RotationFromPath,
     /// The object was not seen in the last frames.
     Lost {
-        /// Time in seconds until which it was followed, if a motion was found.
+        /// Time in seconds of the last frame in which it was followed, if a motion was found.
         last_known: Option<f64>,
     },
     /// The object was lost and searched for in the last frames; the motion is the last one known.
@@ -273,20 +273,19 @@ fn write_out_of_order(f: &mut fmt::Formatter<'_>, frame: u64, perimeters: f64) -
 
 fn write_lost(f: &mut fmt::Formatter<'_>, last_known: Option<f64>) -> fmt::Result {
     f.write_str("the object was lost at the end")?;
-    let Some(time) = last_known.map(|time| significant(time, 4)) else { return Ok(()) };
-    write!(f, "; it was followed until {time} s: --trajectory and --trace have its last poses and motion")
+    let Some(time) = last_known.map(of_time) else { return Ok(()) };
+    write!(f, "; it was followed until {time} s: trajectory and trace have its last poses and motion")
 }
 
 fn write_reacquiring(f: &mut fmt::Formatter<'_>, last_known: f64) -> fmt::Result {
-    let last_known = significant(last_known, 4);
+    let last_known = of_time(last_known);
     write!(f, "the object was lost and searched for at the end; its motion was last known at {last_known} s")
 }
 
 fn write_change(f: &mut fmt::Formatter<'_>, dynamics: Option<Dynamics>) -> fmt::Result {
     let is_of_middle = dynamics == Some(Dynamics::Velocity);
     let what = if is_of_middle { "b changes, as the object turns about no fixed point" } else { "the motion changed" };
-    let middle = if is_of_middle { ", v1 and v2 the velocity of its middle" } else { "" };
-    write!(f, "{what}: the values are those at the end{middle}; --trajectory and --trace have them over time")
+    write!(f, "{what}: the values are those at the end; trajectory and trace have them over time")
 }
 
 fn write_two_planes(f: &mut fmt::Formatter<'_>, ambiguity: &PlaneAmbiguity) -> fmt::Result {

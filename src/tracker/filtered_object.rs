@@ -11,7 +11,7 @@ use crate::warning::Warning;
 #[derive(Debug, Clone)]
 pub(super) struct FilteredObject {
     pub(super) filter: MotionFilter,
-    /// Time in seconds and motion when it was last known.
+    /// The motion as it was last known, and the time in seconds of the last frame that was used while it was.
     pub(super) last_known: Option<(f64, MotionEstimate)>,
 }
 
@@ -23,16 +23,17 @@ impl FilteredObject {
         };
         let estimate = self.filter.estimate();
         if let Some(estimate) = estimate {
-            // Of a lost object nothing is stated, but when something was.
-            let is_stated = estimate.parameters().any(|p| p.value.is_some());
-            let since = self.last_known.filter(|_| !is_stated && self.filter.phase() == Phase::Lost);
-            self.last_known = Some((since.map_or(time, |(since, _)| since), estimate));
+            // A frame that is not used tells nothing of when the object was followed.
+            let last_used =
+                if step.is_accepted() { Some(time) } else { self.last_known.map(|(last_used, _)| last_used) };
+            self.last_known = last_used.map(|last_used| (last_used, estimate));
         }
         Step {
             phase: Some(step.phase.into()),
             hidden: estimate.as_ref().map_or_else(Vec::new, |estimate| self.hidden(estimate)),
             estimate,
             velocity: estimate.and_then(|_| self.filter.velocity()),
+            hides_velocity: self.filter.hides_velocity(),
             residual: step.measurement.and_then(|measurement| measurement.noise),
             innovation: step.measurement.map(|measurement| measurement.innovation),
             state: self.filter.state(),

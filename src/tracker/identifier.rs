@@ -132,6 +132,14 @@ impl Identifier {
         }
     }
 
+    /// Whether the outlines do not show the velocity of the middle.
+    pub(super) fn hides_velocity(&self) -> bool {
+        match self {
+            Self::Filter(object) => object.filter.hides_velocity(),
+            _ => false,
+        }
+    }
+
     /// Turns that the outlines do not decide between, if any.
     pub(super) fn ambiguity(&self) -> Option<Ambiguity> {
         match self {

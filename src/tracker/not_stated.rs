@@ -114,11 +114,11 @@ impl ObjectResult {
         NotStated::of(is_ambiguous(self.ambiguity.as_ref(), self.plane_ambiguity.as_deref(), name), is_hidden)
     }
 
-    /// Why the velocity of the middle is not stated; `None` where it is. Every outline shows it, but among turns that it leaves open it is not known
+    /// Why the velocity of the middle is not stated; `None` where it is. Most outlines show it, but among turns that they leave open it is not known
     /// either.
     #[must_use]
     pub fn velocity_not_stated(&self) -> Option<NotStated> {
-        self.velocity.is_none().then(|| NotStated::of(self.ambiguity.is_some(), false))
+        self.velocity.is_none().then(|| NotStated::of(self.ambiguity.is_some(), self.hides_velocity))
     }
 }
 
@@ -144,7 +144,7 @@ impl Observation {
     /// As [`ObjectResult::velocity_not_stated`], as known after the frame.
     #[must_use]
     pub fn velocity_not_stated(&self) -> Option<NotStated> {
-        self.velocity.is_none().then(|| NotStated::of(self.ambiguity.is_some(), false))
+        self.velocity.is_none().then(|| NotStated::of(self.ambiguity.is_some(), self.hides_velocity))
     }
 
     /// Why an angle or matrix of the pose is not stated where it is not.

@@ -27,6 +27,8 @@ pub struct Observation {
     pub hidden: Vec<&'static str>,
     /// Velocity of the middle of the object, as [`ObjectResult::velocity`](super::ObjectResult::velocity), as known after the frame.
     pub velocity: Option<PointVelocity>,
+    /// As [`ObjectResult::hides_velocity`](super::ObjectResult::hides_velocity), as known after the frame.
+    pub hides_velocity: bool,
     /// The motion of a plane in space as known after the frame.
     pub plane: Option<Box<PlaneEstimate>>,
     /// Pose and motion with their joint covariance, in the image (motion filter). The state is the last one known: while the object is lost,

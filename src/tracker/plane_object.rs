@@ -14,12 +14,15 @@ const DOES_NOT_FIT: f64 = 1.2;
 #[derive(Debug, Clone)]
 pub(super) struct PlaneObject {
     pub(super) filter: PlaneFilter,
+    /// The motion as it was last known.
     last_known: Option<PlaneEstimate>,
+    /// Time in seconds of the last frame that was used while a motion was known.
+    last_used: Option<f64>,
 }
 
 impl PlaneObject {
     pub(super) const fn new(filter: PlaneFilter) -> Self {
-        Self { filter, last_known: None }
+        Self { filter, last_known: None, last_used: None }
     }
 
     pub(super) fn push(&mut self, time: f64, outline: &Outline) -> Step {
@@ -29,6 +32,9 @@ impl PlaneObject {
         };
         let estimate = self.filter.estimate().filter(|_| self.filter.follower().unstated().is_none());
         self.last_known = estimate.or(self.last_known);
+        if step.is_accepted() && estimate.is_some() {
+            self.last_used = Some(time);
+        }
         Step {
             phase: Some(step.phase.into()),
             hidden: match self.filter.unknown() {
@@ -77,7 +83,7 @@ impl PlaneObject {
         if misfit > DOES_NOT_FIT {
             warnings.push(Warning::PlaneMisfit { excess: misfit });
         }
-        warnings.extend(of_following(follower, None));
+        warnings.extend(of_following(follower, self.last_used));
         warnings.sort_by_key(Warning::order);
         warnings
     }

@@ -32,6 +32,9 @@ pub struct ObjectResult {
     /// Velocity of the middle of the object in the last frame, in space if a camera scale is given (motion filter). It may be known while
     /// the angular velocity is not observable, as for a circle.
     pub velocity: Option<PointVelocity>,
+    /// Whether the outlines do not show how the middle moves, as those of a bar whose ends are out of the picture (motion filter). Where they do, a
+    /// velocity that is not stated is not known well enough, or [ambiguous](Self::ambiguity).
+    pub hides_velocity: bool,
     /// Turns between which the outlines do not decide (motion filter).
     pub ambiguity: Option<Ambiguity>,
     /// Two motions of a plane in space that the outlines do not decide between.
@@ -68,6 +71,7 @@ impl ObjectResult {
             covariance: None,
             plane: None,
             velocity: None,
+            hides_velocity: false,
             ambiguity: None,
             plane_ambiguity: None,
             aliases: Vec::new(),

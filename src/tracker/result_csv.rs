@@ -2,6 +2,7 @@ use std::io::{self, Write};
 
 use freeform_estimate::{MotionEstimate, PointVelocity};
 use freeform_identify::AdaptiveDiagnostics;
+use freeform_riccati::ParameterKind;
 
 use super::{
     family::MotionFamily,
@@ -159,12 +160,13 @@ fn optional(value: Option<f64>) -> String {
 }
 
 /// Writes results as CSV with one row per object and parameter, then `v1` and `v2`, the velocity of the middle of the object (motion filter). The column
-/// `reason` says why there is no value: `ambiguous`, `unobservable` or `unknown`.
+/// `reason` says why there is no value: `ambiguous`, `unobservable` or `unknown`. `unit_of_velocity` is that of b, v1 and v2: `1/s` where lengths
+/// have no name, `px/s` where they are pixels.
 ///
 /// # Errors
 ///
 /// Those of the sink.
-pub fn write_results(sink: &mut impl Write, results: &[ObjectResult]) -> io::Result<()> {
+pub fn write_results(sink: &mut impl Write, results: &[ObjectResult], unit_of_velocity: &str) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(sink);
     let header = [
         "object",
@@ -182,9 +184,11 @@ pub fn write_results(sink: &mut impl Write, results: &[ObjectResult]) -> io::Res
     writer.write_record(header).map_err(io::Error::from)?;
     for result in results {
         let found = result.parameters().unwrap_or_default();
-        for (index, (name, unit)) in result.motion.parameter_names().iter().zip(result.motion.units()).enumerate() {
+        let units = result.motion.units().iter().zip(result.motion.parameter_kinds());
+        let units = units.map(|(unit, kind)| if *kind == ParameterKind::Velocity { unit_of_velocity } else { *unit });
+        for (index, (name, unit)) in result.motion.parameter_names().iter().zip(units).enumerate() {
             let known = found.get(index).map(|p| [p.value, p.standard_deviation]).unwrap_or_default();
-            write_row(&mut writer, result, [*name, *unit], known, result.not_stated(name))?;
+            write_row(&mut writer, result, [*name, unit], known, result.not_stated(name))?;
         }
         if !result.has_velocity() && result.velocity.is_none() {
             continue;
@@ -192,7 +196,8 @@ pub fn write_results(sink: &mut impl Write, results: &[ObjectResult]) -> io::Res
         for (index, name) in VELOCITY_NAMES.iter().enumerate() {
             let velocity = result.velocity.as_ref();
             let known = velocity.map(|v| [v.velocity[index], v.standard_deviations()[index]].map(Some));
-            write_row(&mut writer, result, [*name, "1/s"], known.unwrap_or_default(), result.velocity_not_stated())?;
+            let known = known.unwrap_or_default();
+            write_row(&mut writer, result, [*name, unit_of_velocity], known, result.velocity_not_stated())?;
         }
     }
     writer.flush()

@@ -15,6 +15,7 @@ pub(super) struct Step {
     pub(super) estimate: Option<MotionEstimate>,
     pub(super) hidden: Vec<&'static str>,
     pub(super) velocity: Option<PointVelocity>,
+    pub(super) hides_velocity: bool,
     pub(super) plane: Option<Box<PlaneEstimate>>,
     pub(super) plane_ambiguity: Option<Box<PlaneAmbiguity>>,
     pub(super) fit: Option<Fit>,

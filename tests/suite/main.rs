@@ -5,6 +5,7 @@ mod common;
 mod documents;
 mod drawn_shapes;
 mod hostile_geometry;
+mod lost;
 mod masks;
 mod observability;
 mod paper_experiments;

@@ -2,6 +2,7 @@ use std::io::Write as _;
 
 use freeform_drawing::{Findings, MeaningOfB, OBJECTS_PLAYED, Report, write_report};
 use freeform_motion::outline_io::OutlineUncertainty;
+use freeform_motion::riccati::ParameterKind;
 use freeform_motion::tracker::{NotStated, ObjectResult, write_results};
 use freeform_motion::{Tracker, Truth, Warning};
 
@@ -220,7 +221,7 @@ impl<'a> Outcome<'a> {
                 let warnings = self.input.pictures().map(PictureInput::tracing_warnings).unwrap_or_default();
                 write_identify_json(&mut sink, results, b, &self.left_out, &warnings)
             }
-            IdentifyFormat::Csv => write_results(&mut sink, results),
+            IdentifyFormat::Csv => write_results(&mut sink, results, b.unit_in_data(ParameterKind::Velocity, "1/s")),
         };
         written.and_then(|()| sink.flush()).map_err(|error| sink.failure(&error))
     }

@@ -389,7 +389,7 @@ mod tests {
                 &Value::Null,
                 &json!([
                     {"code": "affine_bias", "message": Warning::AffineBias.to_string()},
-                    {"code": "lost", "message": "the object was lost at the end; it was followed until 1.733 s: --trajectory and --trace have its last poses and motion"},
+                    {"code": "lost", "message": "the object was lost at the end; it was followed until 1.733 s: trajectory and trace have its last poses and motion"},
                 ])
             )
         );

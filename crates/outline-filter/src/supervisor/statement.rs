@@ -161,6 +161,14 @@ impl MotionFilter {
         self.track.as_ref().map_or(none, |track| track.blind_parameters(track.body_pose()))
     }
 
+    /// Whether the outline does not show how the object's centroid moves, as far as it is known by now: some motion that the outline does not show
+    /// would move it, and no point nearby stays under all of them. Where it does, a [velocity](Self::velocity) that is not stated is not known well
+    /// enough.
+    #[must_use]
+    pub fn hides_velocity(&self) -> bool {
+        self.track.as_ref().is_some_and(Track::hides_velocity)
+    }
+
     /// Why nothing is stated of the motion although frames have been taken; `None` where it is stated.
     #[must_use]
     pub fn unstated(&self) -> Option<Unstated> {

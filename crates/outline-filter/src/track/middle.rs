@@ -7,7 +7,7 @@ use super::{Track, estimate::TurnOfPose};
 impl Track {
     /// Velocity of the object's centroid in a state of this track; `None` where it is not worth stating, or where the outline does not show it.
     pub(crate) fn velocity_of_centroid(&self, state: &MotionState) -> Option<PointVelocity> {
-        if self.hides_perspective() || self.hides_middle() {
+        if self.hides_velocity() {
             return None;
         }
         let velocity = state.velocity_of(&(self.reference.origin + self.reference.radius * self.map.centroid().coords));
@@ -15,6 +15,11 @@ impl Track {
         let unit = self.reference.time_unit;
         let worth = |deviation: &f64| self.is_worth(*deviation * unit, span, self.reference.radius);
         velocity.standard_deviations().iter().all(worth).then_some(velocity)
+    }
+
+    /// Whether the outline does not show how its centroid moves.
+    pub(crate) fn hides_velocity(&self) -> bool {
+        self.hides_perspective() || self.hides_middle()
     }
 
     /// Whether the outline does not show some of the perspective, as an ellipse does not: nor does it show which point of the body is where then.
