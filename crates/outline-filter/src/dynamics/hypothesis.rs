@@ -280,15 +280,42 @@ impl<const N: usize> Hypothesis<N> {
 
     /// Projects a null direction, given with its dual, out of mean and covariance.
     pub(super) fn hold(&mut self, direction: &CentredVector, dual: &CentredVector) {
-        let k = Self::K;
-        let mut projection = SMatrix::<f64, N, N>::identity();
-        for block in 0..3 {
-            for i in 0..k {
-                (0..k).for_each(|j| projection[(block * k + i, block * k + j)] -= direction[i] * dual[j]);
-            }
+        match Self::K {
+            3 => self.hold_sized::<3>(direction, dual),
+            4 => self.hold_sized::<4>(direction, dual),
+            6 => self.hold_sized::<6>(direction, dual),
+            _ => self.hold_sized::<LARGEST>(direction, dual),
         }
-        self.mean = projection * self.mean;
-        self.covariance = projection * self.covariance * projection.transpose();
+    }
+
+    /// The projection is the same for pose, motion and accelerations, and mixes none of them: its products by zero are left out.
+    fn hold_sized<const K: usize>(&mut self, direction: &CentredVector, dual: &CentredVector) {
+        // By columns.
+        let projection: [[f64; K]; K] =
+            std::array::from_fn(|j| std::array::from_fn(|i| f64::from(u8::from(i == j)) - direction[i] * dual[j]));
+        let (mean, covariance) = (&mut self.mean.data.0[0], &mut self.covariance.data.0);
+        vectorised(
+            #[inline(always)]
+            || {
+                *mean = projected(&projection, mean);
+                let mut columns = [[0.0; N]; N];
+                for j in 0..N {
+                    columns[j] = projected(&projection, &covariance[j]);
+                }
+                for block in 0..N / K {
+                    for row in 0..K {
+                        let mut sum = [0.0; N];
+                        for j in 0..K {
+                            let (column, share) = (&columns[block * K + j], projection[j][row]);
+                            for i in 0..N {
+                                sum[i] += column[i] * share;
+                            }
+                        }
+                        covariance[block * K + row] = sum;
+                    }
+                }
+            },
+        );
     }
 
     /// The velocity of the centroid taken at another point of the object.
@@ -305,4 +332,19 @@ impl<const N: usize> Hypothesis<N> {
         self.mean[3 * k - 2] += carried.x;
         self.mean[3 * k - 1] += carried.y;
     }
+}
+
+/// A vector whose parts of the size of a projection, given by its columns, are each projected.
+#[inline(always)]
+fn projected<const K: usize, const N: usize>(projection: &[[f64; K]; K], vector: &[f64; N]) -> [f64; N] {
+    let mut projected = [0.0; N];
+    for block in 0..N / K {
+        for j in 0..K {
+            let entry = vector[block * K + j];
+            for i in 0..K {
+                projected[block * K + i] += projection[j][i] * entry;
+            }
+        }
+    }
+    projected
 }

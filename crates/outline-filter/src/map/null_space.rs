@@ -6,6 +6,7 @@ use super::{
     OutlineMap,
     centring::{Centring, NormalByNeighbours, Stretch},
     local_fit::direction_variance,
+    null_directions::{NullDirection, NullDirections},
     rest::{Rest, add_square, eigen_of_block},
     turn_evidence::{TurnEvent, TurnEvidence},
 };
@@ -23,27 +24,6 @@ pub(crate) fn map_between(linear: &Matrix2<f64>, from: &Vector2<f64>, to: &Vecto
     let mut map = linear.to_homogeneous();
     (map[(0, 2)], map[(1, 2)]) = (shift.x, shift.y);
     map
-}
-
-/// A null direction in the image: Jacobians of measurements lose `(h . direction) dual`.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct NullDirection {
-    pub(crate) direction: ParameterVector,
-    pub(crate) dual: ParameterVector,
-}
-
-impl NullDirection {
-    /// Projects the direction out of the Jacobian of a measurement.
-    pub(crate) fn project_out(&self, jacobian: &mut ParameterVector) {
-        let along: f64 = jacobian.iter().zip(&self.direction).map(|(a, b)| a * b).sum();
-        jacobian.iter_mut().zip(&self.dual).for_each(|(r, d)| *r -= along * d);
-    }
-
-    /// Subtracts the part of a motion that is in this direction.
-    pub(crate) fn subtract_from(&self, motion: &mut ParameterVector) {
-        let part: f64 = motion.iter().zip(&self.dual).map(|(a, b)| a * b).sum();
-        motion.iter_mut().zip(&self.direction).for_each(|(m, d)| *m -= part * d);
-    }
 }
 
 /// The null directions of an outline in the body frame.
@@ -306,19 +286,20 @@ impl OutlineMap {
     }
 
     /// The null directions in the image, for a pose.
-    pub(crate) fn null_directions(&self, model: MotionModel, pose: &Matrix3<f64>) -> Vec<NullDirection> {
+    pub(crate) fn null_directions(&self, model: MotionModel, pose: &Matrix3<f64>) -> NullDirections {
         let space = &self.null_space;
+        let mut list = NullDirections::default();
         if space.in_body.is_empty() {
-            return Vec::new();
+            return list;
         }
         let k = model.parameter_count();
-        let Some(inverse) = pose.try_inverse() else { return Vec::new() };
+        let Some(inverse) = pose.try_inverse() else { return list };
         let (ad, ad_inverse) = (model.adjoint(pose, &inverse), model.adjoint(&inverse, pose));
         // Duals in centred coordinates, where the directions are orthonormal. What is taken off along a turn is all of the turn: noise of the
         // normals gives its centre a place of its own, and the object would be taken to turn as it travels.
-        let Some(from_body) = space.frame.try_inverse() else { return Vec::new() };
+        let Some(from_body) = space.frame.try_inverse() else { return list };
         let centring = model.adjoint(&from_body, &space.frame);
-        let list = space.in_body.iter().map(|u| {
+        for u in &space.in_body {
             let mut direction = [0.0; MAX_PARAMETERS];
             let mut centred = [0.0; MAX_PARAMETERS];
             for i in 0..k {
@@ -336,9 +317,9 @@ impl OutlineMap {
             for j in 0..k {
                 dual[j] = (0..k).map(|i| in_body[i] * ad_inverse[i][j]).sum();
             }
-            NullDirection { direction, dual }
-        });
-        list.collect()
+            list.push(NullDirection { direction, dual });
+        }
+        list
     }
 
     /// Of all poses that differ from `pose` by null directions, the one that moves the object the least from `from`.

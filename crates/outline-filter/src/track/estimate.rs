@@ -119,7 +119,7 @@ impl Track {
             return None;
         }
         let (summary, given_outline) = self.summary_beside_outline(&null)?;
-        let place = (self.map.centroid(), null.as_slice());
+        let place = (self.map.centroid(), &*null);
         DynamicsFilter::begin(belief.model, setting, (&summary, &given_outline), place, belief.memory.step)
     }
 
@@ -310,8 +310,7 @@ impl Track {
                 ParameterKind::Velocity => entry.abs() / radius,
                 ParameterKind::Perspective => entry.abs() * radius,
             });
-            let sizes: Vec<f64> = sizes.collect();
-            let largest = sizes.iter().copied().fold(0.0, f64::max);
+            let largest = sizes.clone().fold(0.0, f64::max);
             let turns = self.turn_is_unseen();
             for ((blind, size), kind) in blind.iter_mut().zip(sizes).zip(model.parameter_kinds()) {
                 let takes_all = *kind == ParameterKind::Velocity || model > MotionModel::Similarity;

@@ -12,7 +12,7 @@ use super::{
 use crate::{
     belief::Belief,
     dynamics::{CentredDeviations, CentredPose, FamilyTests, Summary},
-    map::{NullDirection, OutlineMap, TurnEvent, TurnEvidence},
+    map::{NullDirections, OutlineMap, TurnEvent, TurnEvidence},
     measurement::{
         Counted, Frame, NegativeLogLikelihood, NoiseModel, Reference, ShownCorrelation, TakenOff, Tolerance, View,
         correlation_of,
@@ -116,7 +116,7 @@ impl Track {
     }
 
     /// What its outline does not show.
-    pub(crate) fn null_directions(&self) -> Vec<NullDirection> {
+    pub(crate) fn null_directions(&self) -> NullDirections {
         self.map.null_directions(self.belief.model, &self.belief.pose)
     }
 

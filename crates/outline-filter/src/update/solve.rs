@@ -83,16 +83,18 @@ impl View<'_> {
             iterations: 0,
             last_step: 0.0,
         };
-        let mut null = null.to_vec();
+        // Those of the pose of the step before.
+        let mut null_of_step = None;
         let mut work = Arrowhead::new(k);
         let mut settled = false;
         while !settled && self.goes_on(linearisations, proposal.iterations, proposal.last_step) {
             // A turn that is not seen is one about the centroid as the frame has it.
             if proposal.iterations > 0 && !null.is_empty() {
-                null = self.map.null_directions(model, &proposal.pose);
+                null_of_step = Some(self.map.null_directions(model, &proposal.pose));
             }
+            let null = null_of_step.as_deref().unwrap_or(null);
             let pass = if proposal.iterations == 0 { Pass::First } else { Pass::Again };
-            self.measure_by_columns(frame, &proposal.pose, &null, pass);
+            self.measure_by_columns(frame, &proposal.pose, null, pass);
             // The room that the frame has for them is used while its equations are set up.
             work.cells = std::mem::take(&mut frame.cells_with_frame);
             let Added { information: added, right } =

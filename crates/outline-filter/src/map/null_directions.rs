@@ -1,0 +1,59 @@
+//! Null directions of an outline in one pose, in a place of their own size: they are asked for in every frame, which takes no memory from the heap.
+use std::{array, iter::Take, ops::Deref};
+
+use freeform_riccati::{MAX_PARAMETERS, ParameterVector};
+
+/// A null direction in the image: Jacobians of measurements lose `(h . direction) dual`.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct NullDirection {
+    pub(crate) direction: ParameterVector,
+    pub(crate) dual: ParameterVector,
+}
+
+impl NullDirection {
+    /// Projects the direction out of the Jacobian of a measurement.
+    pub(crate) fn project_out(&self, jacobian: &mut ParameterVector) {
+        let along: f64 = jacobian.iter().zip(&self.direction).map(|(a, b)| a * b).sum();
+        jacobian.iter_mut().zip(&self.dual).for_each(|(r, d)| *r -= along * d);
+    }
+
+    /// Subtracts the part of a motion that is in this direction.
+    pub(crate) fn subtract_from(&self, motion: &mut ParameterVector) {
+        let part: f64 = motion.iter().zip(&self.dual).map(|(a, b)| a * b).sum();
+        motion.iter_mut().zip(&self.direction).for_each(|(m, d)| *m -= part * d);
+    }
+}
+
+/// The null directions of an outline in a pose: no more than a pose has parameters. Read as a slice.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct NullDirections {
+    entries: [NullDirection; MAX_PARAMETERS],
+    count: usize,
+}
+
+impl NullDirections {
+    /// Adds a direction. Of independent directions there are no more than there is room for: another is not taken.
+    pub(super) fn push(&mut self, direction: NullDirection) {
+        if let Some(entry) = self.entries.get_mut(self.count) {
+            *entry = direction;
+            self.count += 1;
+        }
+    }
+}
+
+impl Deref for NullDirections {
+    type Target = [NullDirection];
+
+    fn deref(&self) -> &[NullDirection] {
+        &self.entries[..self.count]
+    }
+}
+
+impl IntoIterator for NullDirections {
+    type Item = NullDirection;
+    type IntoIter = Take<array::IntoIter<NullDirection, MAX_PARAMETERS>>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.entries.into_iter().take(self.count)
+    }
+}
