@@ -348,3 +348,34 @@ fn projected<const K: usize, const N: usize>(projection: &[[f64; K]; K], vector:
     }
     projected
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check<const N: usize>() {
+        let k = N / 3;
+        let (direction, dual) = (
+            CentredVector::from_fn(|i, _| if i < k { (0.7 + i as f64).sin() } else { 0.0 }),
+            CentredVector::from_fn(|i, _| if i < k { (1.9 * i as f64).cos() } else { 0.0 }),
+        );
+        let mean = SVector::<f64, N>::from_fn(|i, _| (0.3 + 1.1 * i as f64).sin());
+        let covariance = SMatrix::<f64, N, N>::from_fn(|i, j| (0.2 * (i * j + i + j) as f64).cos());
+        let mut hypothesis = Hypothesis { course: Course::ConstantGenerator, mean, covariance };
+        hypothesis.hold(&direction, &dual);
+        let mut projection = SMatrix::<f64, N, N>::identity();
+        for (block, i, j) in (0..3).flat_map(|b| (0..k).flat_map(move |i| (0..k).map(move |j| (b * k, i, j)))) {
+            projection[(block + i, block + j)] -= direction[i] * dual[j];
+        }
+        assert_eq!(hypothesis.mean, projection * mean, "{k} parameters");
+        assert_eq!(hypothesis.covariance, projection * covariance * projection.transpose(), "{k} parameters");
+    }
+
+    #[test]
+    fn projecting_block_by_block_is_projecting_with_the_whole_matrix_to_the_last_bit() {
+        check::<9>();
+        check::<12>();
+        check::<18>();
+        check::<24>();
+    }
+}
