@@ -1,7 +1,8 @@
 //! One object of a plane in space, and what is known of it.
 use freeform_curve_fit::Outline;
 use freeform_estimate::PlaneEstimate;
-use freeform_outline_filter::{PlaneFilter, PlaneUnknown, Unstated};
+use freeform_outline_filter::{Phase, PlaneFilter, PlaneUnknown, Unstated};
+use freeform_riccati::PlaneMotion;
 
 use super::step::{Step, of_following};
 use crate::rejection::RejectionCause;
@@ -31,9 +32,10 @@ impl PlaneObject {
             Err(error) => return Step { rejected_because: Some(RejectionCause::Filter(error)), ..Step::default() },
         };
         let estimate = self.filter.estimate().filter(|_| self.filter.follower().unstated().is_none());
-        self.last_known = estimate.or(self.last_known);
-        if step.is_accepted() && estimate.is_some() {
-            self.last_used = Some(time);
+        // A frame that is used says what is known by now; one that is not leaves that as it was.
+        if step.is_accepted() {
+            self.last_known = estimate.or(self.last_known.map(|known| unknown(&known)));
+            self.last_used = estimate.map(|_| time).or(self.last_used);
         }
         Step {
             phase: Some(step.phase.into()),
@@ -56,7 +58,9 @@ impl PlaneObject {
 
     /// The motion as it was last known.
     pub(super) fn estimate(&self) -> Option<PlaneEstimate> {
-        self.last_known.filter(|_| !self.is_unstated())
+        let is_lost = self.filter.follower().phase() == Phase::Lost;
+        let known = self.last_known.filter(|_| !self.is_unstated());
+        known.map(|known| if is_lost { unknown(&known) } else { known })
     }
 
     fn is_unstated(&self) -> bool {
@@ -87,4 +91,9 @@ impl PlaneObject {
         warnings.sort_by_key(Warning::order);
         warnings
     }
+}
+
+/// An estimate of which nothing is known any more.
+fn unknown(estimate: &PlaneEstimate) -> PlaneEstimate {
+    PlaneEstimate::new(*estimate.motion(), *estimate.covariance(), [false; PlaneMotion::PARAMETERS])
 }

@@ -1,8 +1,10 @@
 //! Until when an object that is lost was followed, and why a velocity of the middle is not stated.
 use freeform_motion::curve_fit::{OpenArc, OpenOutline, Outline};
+use freeform_motion::outline_filter::FilterSettings;
 use freeform_motion::outline_io::OutlineFrame;
-use freeform_motion::riccati::MotionModel;
-use freeform_motion::tracker::{Method, NotStated, ObjectPhase};
+use freeform_motion::riccati::{MotionModel, PinholeCamera, PlaneMotion};
+use freeform_motion::sim_camera::{BuiltInShape, Scene, SequenceLength, Settings, Simulator};
+use freeform_motion::tracker::{Method, MethodSettings, NotStated, ObjectPhase};
 use freeform_motion::{Tracker, TrackerSettings, Warning};
 use nalgebra::Point2;
 
@@ -91,4 +93,30 @@ fn a_velocity_that_the_outline_does_not_show_is_unobservable_and_one_that_is_not
     assert_eq!(of_egg.results()[0].velocity_not_stated(), Some(NotStated::Unknown));
     (1..12).for_each(|frame| drop(of_egg.push(&egg(frame, 0.05 * frame as f64, 0.02 * frame as f64))));
     assert_eq!(of_egg.results()[0].velocity_not_stated(), None);
+}
+
+#[test]
+fn of_a_plane_that_is_lost_nothing_is_stated_but_until_when_it_was_followed() {
+    let camera = PinholeCamera::new(900.0, Point2::new(320.0, 240.0)).expect("a camera");
+    let motion = PlaneMotion::of_parameters([0.12, -0.08, 0.5, 0.1, 0.05, 0.12, 0.46, 0.35]);
+    let scene = Scene::in_space(BuiltInShape::Bird, motion, camera, 300.0);
+    let length = SequenceLength::Frames(40);
+    let simulated =
+        Simulator::new(scene, Settings { length, noise: 0.3, ..Settings::default() }).expect("a plane that is seen");
+    let settings = FilterSettings { model: MotionModel::Projective, ..FilterSettings::default() };
+    let method = MethodSettings::Plane(camera, settings);
+    let mut followed = Tracker::new(TrackerSettings { method, ..TrackerSettings::default() }).expect("settings");
+    let mut last_used = None;
+    for (frame, seen) in (0..).zip(simulated.frames()) {
+        let outline = if frame < 30 { seen.outline } else { another_flower(frame, 0.0).outline };
+        let observation = followed.push(&OutlineFrame { frame, time: seen.time, object: "plane".to_owned(), outline });
+        if observation.is_accepted() {
+            last_used = Some(seen.time);
+        }
+        if frame == 29 {
+            assert!(followed.results()[0].parameters().expect("a motion").iter().all(|p| p.value.is_some()));
+        }
+    }
+    assert_eq!(last_known(&followed), last_used);
+    assert!(followed.results()[0].parameters().expect("a motion").iter().all(|p| p.value.is_none()));
 }

@@ -224,9 +224,11 @@ impl PlaneFilter {
         self.sort();
     }
 
-    /// Best first; without those that the frames have ruled out, and one that has come to where another is.
+    /// Best first; without those that no camera can see, those that the frames have ruled out, and one that has come to where another is.
     fn sort(&mut self) {
-        self.solutions.retain(|solution| solution.squares.is_finite());
+        let (scenery, span) = (self.scenery.as_ref(), self.span());
+        let is_seen = |solution: &Solution| scenery.is_none_or(|scenery| scenery.shows(&solution.motion, span));
+        self.solutions.retain(|solution| solution.squares.is_finite() && is_seen(solution));
         self.solutions.sort_by(|a, b| a.squares.total_cmp(&b.squares));
         let least = self.solutions.first().map_or(0.0, |best| best.squares);
         self.solutions.retain(|other| other.squares <= least + tuning::RULED_OUT);

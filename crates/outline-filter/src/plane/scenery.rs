@@ -2,11 +2,11 @@
 use std::sync::Arc;
 
 use freeform_riccati::{MotionModel, PinholeCamera, PlaneMotion, map_point, pull_back};
-use nalgebra::{Matrix3, SMatrix, SVector, Vector2};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector2, Vector3};
 
 use crate::{
     belief::Belief,
-    map::OutlineMap,
+    map::{Cell, OutlineMap},
     measurement::{Frame, Measurement, NO_CELL, NoiseModel, Pass, Reference, View},
     track::Track,
     tuning::plane as tuning,
@@ -104,6 +104,26 @@ impl Scenery {
         self.flow(motion, seconds) * self.first_pose
     }
 
+    /// Whether a motion leaves all of the outline before the camera, and seen from its front, so many seconds after the first frame: the horizon of
+    /// the plane lies beside it. Residuals of other motions are of points beyond any number. A plane that has hardly moved shows no horizon.
+    pub(super) fn shows(&self, motion: &PlaneMotion, seconds: f64) -> bool {
+        let hardly_moves = motion.velocity.norm() * seconds < tuning::HARDLY_MOVED;
+        (hardly_moves || self.is_beside_horizon(motion)) && self.map.is_shown_in(&self.pose(motion, seconds))
+    }
+
+    /// Whether the horizon of the plane lies beside the outline in the first frame.
+    fn is_beside_horizon(&self, motion: &PlaneMotion) -> bool {
+        let to_camera = self.to_camera * self.first_pose;
+        // Of a point at (x, y) of the picture, over that of the plane on the optical axis.
+        let inverse_depth = |cell: &Cell| {
+            let p = map_point(&to_camera, &cell.centre);
+            motion.normal.dot(&Vector3::new(p.x, p.y, 1.0))
+        };
+        let inverse_depths = self.map.cells().iter().map(inverse_depth);
+        let (least, most) = inverse_depths.fold((f64::INFINITY, 0.0_f64), |(a, b), d| (a.min(d), b.max(d)));
+        least > tuning::LEAST_DEPTH * most
+    }
+
     /// Derivative of the error of the pose, on its left, by the parameters of the motion (equation 7 of docs/plane-in-space.md).
     pub(super) fn sensitivity(&self, motion: &PlaneMotion, seconds: f64) -> Option<Matrix8> {
         let back = motion.flow(seconds).matrix().try_inverse()?;
@@ -194,5 +214,32 @@ impl PoseInformation {
             sum.right.axpy(m.weight * m.residual, &h, 1.0);
         }
         sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Point2;
+
+    use super::*;
+    use crate::drawn_curves::{lobed, outline, polar};
+
+    #[test]
+    fn motions_that_put_the_horizon_of_the_plane_through_the_outline_or_turn_its_back_are_not_seen() {
+        let centre = Vector2::new(320.0, 240.0);
+        let seen = outline(200, |t| polar(150.0 * lobed(t, &[(3.0, [0.2, 0.0])]), t) + centre);
+        let track = Track::begin(MODEL, &seen, 0.0, &mut Frame::default()).expect("a track");
+        let camera = PinholeCamera::new(800.0, Point2::from(centre)).expect("a camera");
+        let scenery = Scenery::of(&track, &camera).expect("a scenery");
+        let shows = |motion: [f64; 8]| scenery.shows(&PlaneMotion::of_parameters(motion), 1.0);
+        // Tilted by 0, 50 and 70 degrees; beyond 79 the horizon lies on the outline.
+        for tilt in [0.0, 1.2, 2.7] {
+            assert!(shows([0.1, -0.1, 0.5, 0.1, 0.1, 0.1, tilt, 0.0]), "{tilt}");
+        }
+        for tilt in [5.0, 6.0, -6.0, 50.0] {
+            assert!(!shows([0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 0.0, tilt]), "{tilt}");
+            assert!(shows([0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0, tilt]), "{tilt}");
+        }
+        assert!(!shows([3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]));
     }
 }

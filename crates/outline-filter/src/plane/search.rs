@@ -34,7 +34,7 @@ pub(super) fn minima(scenery: &Scenery, poses: &[SeenPose], known: &[PlaneMotion
     let mut found: Vec<Minimum> = Vec::new();
     for start in starts {
         let Some(minimum) = minimum(scenery, poses, start) else { continue };
-        if !is_seen(&minimum.motion, poses) {
+        if !is_seen(scenery, &minimum.motion, poses) {
             continue;
         }
         match found.iter_mut().find(|other| are_alike(&other.motion, &minimum.motion, poses)) {
@@ -47,10 +47,10 @@ pub(super) fn minima(scenery: &Scenery, poses: &[SeenPose], known: &[PlaneMotion
     found
 }
 
-/// Whether the plane faces the camera in every frame, by the point that it was seen at first.
-fn is_seen(motion: &PlaneMotion, poses: &[SeenPose]) -> bool {
+/// Whether the camera sees the outline in every frame.
+fn is_seen(scenery: &Scenery, motion: &PlaneMotion, poses: &[SeenPose]) -> bool {
     motion.parameters().iter().all(|value| value.is_finite())
-        && poses.iter().all(|seen| (motion.flow(seen.seconds).matrix() * Vector3::z()).z > 0.0)
+        && poses.iter().all(|seen| scenery.shows(motion, seen.seconds))
 }
 
 /// Whether two motions are one that was found twice.

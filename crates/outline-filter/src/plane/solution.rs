@@ -139,7 +139,7 @@ impl Solution {
         drift.dot(&(self.marginal * drift)) > (tuning::STALE * sigma).powi(2)
     }
 
-    /// Linearises all frames anew until the solution settles. False where there is none.
+    /// Linearises all frames anew until the solution settles. False where there is none, or one that a camera cannot see.
     pub(super) fn relinearise(&mut self, scenery: &Scenery, frames: &[KeptFrame], buffers: &mut Frame) -> bool {
         self.try_relinearise(scenery, frames, buffers).is_some()
     }
@@ -177,6 +177,11 @@ impl Solution {
         }
         self.information.settle();
         self.drift = Vector8::zeros();
+        if !frames.iter().all(|frame| scenery.shows(&self.motion, frame.seconds)) {
+            // It explains nothing: it is no least sum of squares of what a camera may see.
+            self.squares = f64::INFINITY;
+            return None;
+        }
         Some(())
     }
 

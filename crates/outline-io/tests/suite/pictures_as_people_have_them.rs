@@ -63,6 +63,16 @@ fn webp_and_pictures_of_16_bits_are_read() {
     }
 }
 
+#[test]
+fn masks_of_16_bits_with_values_of_8_are_read_as_these() {
+    let labels = GrayImage::from_fn(24, 16, |x, y| Luma([u8::from(x > 5 && y > 3) * (1 + u8::from(x > 12))]));
+    let wide = image::ImageBuffer::from_fn(24, 16, |x, y| Luma([u16::from(labels[(x, y)].0[0])]));
+    for format in [ImageFormat::Png, ImageFormat::Tiff] {
+        let mask = encoded(DynamicImage::ImageLuma16(wide.clone()), format);
+        assert_eq!(decode(&mask).expect("16 bits"), labels, "{format:?}");
+    }
+}
+
 /// A chunk of a PNG.
 fn chunk(name: &[u8; 4], content: &[u8]) -> Vec<u8> {
     let mut crc = u32::MAX;
