@@ -52,8 +52,10 @@ impl Chosen {
 
     /// What is said of it where it is not to be trusted, by the codes.
     pub(crate) fn warnings(&self, drawn: Option<&Path>) -> Vec<(TracingWarning, String)> {
-        let others = self.choice.candidates.iter().skip(1).take(2).map(|other| options_of(&other.tracing).join(" "));
-        let others: Vec<String> = others.collect();
+        // The first is taken; a simpler way may be preferred to one of a higher score.
+        let mut others: Vec<_> = self.choice.candidates.iter().skip(1).collect();
+        others.sort_by(|a, b| b.score.total_cmp(&a.score));
+        let others: Vec<String> = others.iter().take(2).map(|other| options_of(&other.tracing).join(" ")).collect();
         let next = if others.is_empty() { String::new() } else { format!("; next best: {}", others.join(", or ")) };
         let told = |warning: TracingWarning| match (warning, drawn) {
             (TracingWarning::Doubtful, Some(path)) => {

@@ -34,34 +34,40 @@ pub fn candidate_sheet(
     candidates: &[TracingEvidence],
     name: impl Fn(&TracingEvidence) -> String,
 ) -> RgbImage {
-    let row = |(rank, (place, candidate)): (usize, (usize, &TracingEvidence))| {
-        (caption(rank, candidate, &name(candidate), place == 0), drawn(preview, base, candidate))
-    };
-    let rows: Vec<(String, Vec<RgbImage>)> = by_score(candidates).into_iter().enumerate().map(row).collect();
+    let row = |way: Ranked<'_>| (way.caption(&name(way.evidence)), drawn(preview, base, way.evidence));
+    let rows: Vec<(String, Vec<RgbImage>)> = ranked(candidates).into_iter().map(row).collect();
     sheet(&rows)
 }
 
-/// The ways that are drawn, with their places in the choice, the highest score first.
-fn by_score(candidates: &[TracingEvidence]) -> Vec<(usize, &TracingEvidence)> {
-    let mut ways: Vec<_> = candidates.iter().enumerate().collect();
-    ways.sort_by(|(_, a), (_, b)| b.score.total_cmp(&a.score));
-    if let Some(taken) = ways.iter().position(|(place, _)| *place == 0).filter(|rank| *rank >= WAYS) {
-        let taken = ways.remove(taken);
-        ways.insert(WAYS - 1, taken);
-    }
-    ways.truncate(WAYS);
-    ways
+/// A way of tracing among all.
+#[derive(Debug, Clone, Copy)]
+struct Ranked<'a> {
+    /// By score, from 1 on.
+    rank: usize,
+    is_taken: bool,
+    evidence: &'a TracingEvidence,
 }
 
-fn caption(
-    rank: usize,
-    TracingEvidence { found, pictures, score, .. }: &TracingEvidence,
-    name: &str,
-    is_taken: bool,
-) -> String {
-    let score = short((score * 1000.0).round() / 1000.0);
-    let taken = if is_taken { "  taken" } else { "" };
-    format!("{}  {name}  score {score}  {found} of {pictures} pictures{taken}", rank + 1)
+impl Ranked<'_> {
+    fn caption(&self, name: &str) -> String {
+        let TracingEvidence { found, pictures, score, .. } = self.evidence;
+        let score = short((score * 1000.0).round() / 1000.0);
+        let taken = if self.is_taken { "  taken" } else { "" };
+        format!("{}  {name}  score {score}  {found} of {pictures} pictures{taken}", self.rank)
+    }
+}
+
+/// The ways that are drawn, the highest score first; the last of them is the one taken where it is not among the best.
+fn ranked(candidates: &[TracingEvidence]) -> Vec<Ranked<'_>> {
+    let mut by_score: Vec<_> = candidates.iter().enumerate().collect();
+    by_score.sort_by(|(_, a), (_, b)| b.score.total_cmp(&a.score));
+    let ways = (1..).zip(by_score).map(|(rank, (place, evidence))| Ranked { rank, is_taken: place == 0, evidence });
+    let (mut best, others): (Vec<_>, Vec<_>) = ways.partition(|way| way.rank <= WAYS);
+    if let Some(taken) = others.into_iter().find(|way| way.is_taken) {
+        best.truncate(WAYS - 1);
+        best.push(taken);
+    }
+    best
 }
 
 /// Pictures of the sequence with the outlines that a way finds in them, in the size of the sheet.
@@ -137,4 +143,50 @@ fn sheet(rows: &[(String, Vec<RgbImage>)]) -> RgbImage {
         }
     }
     sheet
+}
+
+#[cfg(test)]
+mod tests {
+    use freeform_motion::outline_io::{Smoothing, Tracing};
+
+    use super::*;
+
+    /// A way of tracing of some score.
+    fn way(score: f64) -> TracingEvidence {
+        let (way, smoothing) = (TracingWay::Lighter, Smoothing::default());
+        TracingEvidence {
+            tracing: Tracing { way, channel: Channel::Luminance, smoothing, level: None },
+            pictures: 12,
+            found: 11,
+            steadiness: 1.0,
+            evenness: 1.0,
+            contrast: 1.0,
+            smoothness: 1.0,
+            movement: 5.0,
+            rests: false,
+            clipped: 0.0,
+            area_share: 0.1,
+            objects: 1,
+            second: 0.0,
+            selection: Selection::Largest,
+            inner_share: 0.0,
+            has_steady_contours: false,
+            score,
+        }
+    }
+
+    fn captions(scores: &[f64]) -> Vec<String> {
+        let ways: Vec<_> = scores.iter().map(|score| way(*score)).collect();
+        ranked(&ways).iter().map(|way| way.caption("--light")).collect()
+    }
+
+    #[test]
+    fn ways_are_drawn_by_their_scores_and_the_one_taken_is_marked_with_its_rank() {
+        let caption =
+            |rank: usize, score: f64, taken: &str| format!("{rank}  --light  score {score}  11 of 12 pictures{taken}");
+        assert_eq!(captions(&[0.5, 0.7, 0.6]), [caption(1, 0.7, ""), caption(2, 0.6, ""), caption(3, 0.5, "  taken")]);
+        let many = captions(&[0.1, 0.2, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3]);
+        let expected = [(1, 0.9), (2, 0.8), (3, 0.7), (4, 0.6), (5, 0.5)].map(|(rank, score)| caption(rank, score, ""));
+        assert_eq!(many, [&expected[..], &[caption(9, 0.1, "  taken")]].concat());
+    }
 }
