@@ -50,7 +50,7 @@ pub enum Warning {
     },
     /// The object was lost and searched for in the last frames; the motion is the last one known.
     Reacquiring {
-        /// Time in seconds when the motion was last known.
+        /// Time in seconds of the last frame that was used while the motion was known.
         last_known: f64,
     },
     /// The motion is that between two frames, and either how the pictures were traced is in doubt or other frames were rejected: no third frame tells

@@ -62,9 +62,9 @@ fn once_the_outline_is_known_and_nothing_is_seen_in_front_of_it_no_step_of_the_m
     }
 }
 
-/// What a picture shows of a straight strip of 20 pixels that goes along itself and sinks: both ends are out of it, and points lie at other places of the
-/// strip in each frame. From the seventh frame on its sides are seen for 8 pixels less at either end: four points beyond the ends of what is known, as
-/// two sides have them, would have the map asked whether it grows.
+/// What a picture shows of a straight strip of 20 pixels that goes along itself and sinks: both ends are out of it, and points lie at other places
+/// of the strip in each frame. From the seventh frame on its sides are seen for 8 pixels less at either end: four points beyond the ends of what is
+/// known, as two sides have them, would have the map asked whether it grows.
 fn straight_strip(frame: u32) -> Outline {
     const NOISE: f64 = 0.05;
     let seen = if frame < 6 { 0..150 } else { 4..146 };

@@ -257,6 +257,10 @@ fn the_table_says_where_b_is_and_in_which_unit() {
         assert!(std::fs::read_to_string(report).expect("a report").contains(note.trim_end()), "{note}");
         assert!(table.contains(note), "{table}");
         assert_eq!(table.contains("px/s"), options.is_empty(), "{table}");
+        let rows = succeed(&format!("identify {frames} --fps 10 --format csv --quiet {options}"), "");
+        let units = |name: &str| rows.lines().find(|row| row.contains(name)).and_then(|row| row.split(',').nth(8));
+        let unit = if options.is_empty() { "px/s" } else { "1/s" };
+        assert_eq!([",b1,", ",v2,"].map(units), [Some(unit); 2], "{rows}");
         assert!(table.lines().all(|line| line.chars().count() <= 80), "{table}");
     }
 }

@@ -3,7 +3,7 @@ use freeform_riccati::{MAX_PARAMETERS, ParameterMatrix};
 use nalgebra::{SMatrix, SVector};
 
 use super::{OffsetInformation, outer_products::sum_of_outer_products};
-use crate::vectors::vectorised;
+use crate::{tuning::update::ROUNDING_OF_VARIANCE, vectors::vectorised};
 
 /// Pose error and motion parameters of the largest model.
 pub(crate) const STATE: usize = 2 * MAX_PARAMETERS;
@@ -58,24 +58,31 @@ impl Arrowhead {
         );
     }
 
-    /// Lets pose and motion have changed at random by a covariance, so that `after` is known of them. Offsets keep what they are known
-    /// to be, and their regression on pose and motion; what they would come to know of each other is dropped.
-    pub(crate) fn add_covariance(&mut self, added: &StateMatrix, after: &StateMatrix) {
+    /// Lets pose and motion, of which `before` is known, have changed at random by a covariance, so that `after` is known of them. Offsets keep what
+    /// they are known to be, and their regression on pose and motion; what they would come to know of each other is dropped. `None` where that cannot
+    /// be computed; nothing has changed then.
+    pub(crate) fn add_covariance(&mut self, added: &StateMatrix, [before, after]: [&StateMatrix; 2]) -> Option<()> {
         match self.k {
-            3 => self.add_covariance_sized::<6>(added, after),
-            4 => self.add_covariance_sized::<8>(added, after),
-            6 => self.add_covariance_sized::<12>(added, after),
-            _ => self.add_covariance_sized::<16>(added, after),
+            3 => self.add_covariance_sized::<6>(added, before, after),
+            4 => self.add_covariance_sized::<8>(added, before, after),
+            6 => self.add_covariance_sized::<12>(added, before, after),
+            _ => self.add_covariance_sized::<16>(added, before, after),
         }
     }
 
-    fn add_covariance_sized<const S: usize>(&mut self, added: &StateMatrix, after: &StateMatrix) {
-        // Before (x) given after (x'): x = gain x' + rest. Of a covariance P before, gain = P after and rest = P - gain P. Where next to nothing is
-        // known of a direction P is large, and nothing would be left of that difference but rounding.
+    fn add_covariance_sized<const S: usize>(
+        &mut self,
+        added: &StateMatrix,
+        before: &StateMatrix,
+        after: &StateMatrix,
+    ) -> Option<()> {
+        // Before (x) given after (x'): x = gain x' + rest. Of the covariance P before and Q added, gain = P (P + Q)^-1 and rest = P - gain P.
+        // Either may be larger than the other by ten digits along some direction, and nothing but rounding be left of a difference.
         let of_size = |m: &StateMatrix| SMatrix::<f64, S, S>::from_fn(|i, j| m[(i, j)]);
-        let added = of_size(added);
-        let gain = SMatrix::<f64, S, S>::identity() - added * of_size(after);
-        let rest = gain * added;
+        let (root, known) = (square_root(of_size(added)), of_size(before));
+        let inner = SMatrix::<f64, S, S>::identity() + root.transpose() * known * root;
+        let rest = root * inner.cholesky()?.solve(&root.transpose());
+        let gain = SMatrix::<f64, S, S>::identity() - rest * known;
         let [gain, rest] = [gain, rest].map(rows::<S>);
         let (own, couplings) = self.cells.all_mut::<S>();
         vectorised(
@@ -90,6 +97,7 @@ impl Arrowhead {
         for (i, (row, told)) in self.dense.iter_mut().zip(&told).enumerate() {
             (0..S).for_each(|j| row[j] = after[(i, j)] + told[j]);
         }
+        Some(())
     }
 
     /// Information of pose and motion with the offsets eliminated, `L - sum c c' / o`; unit diagonal beyond the state.
@@ -183,6 +191,22 @@ fn transform<const K: usize, const S: usize>(v: &mut [f64; S], inverse: &Paramet
 
 fn rows<const S: usize>(m: SMatrix<f64, S, S>) -> [[f64; S]; S] {
     std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)]))
+}
+
+/// A matrix U with `U U' = m`, of a covariance of any rank: its Cholesky factor with pivots.
+fn square_root<const S: usize>(m: SMatrix<f64, S, S>) -> SMatrix<f64, S, S> {
+    let (variances, mut left, mut root) = (m.diagonal(), m, SMatrix::<f64, S, S>::zeros());
+    for number in 0..S {
+        let share = |i: usize| if variances[i] > 0.0 { left[(i, i)] / variances[i] } else { 0.0 };
+        let (pivot, most) = (0..S).map(|i| (i, share(i))).fold((0, 0.0), |a, b| if b.1 > a.1 { b } else { a });
+        if most <= ROUNDING_OF_VARIANCE {
+            break;
+        }
+        let column = left.column(pivot) / left[(pivot, pivot)].sqrt();
+        left -= column * column.transpose();
+        root.set_column(number, &column);
+    }
+    root
 }
 
 /// What is known of an offset after its regression on pose and motion has been carried over to what they are now: they were `gain` times that, but

@@ -20,7 +20,10 @@ impl OutlineMap {
     /// is no such point, or none nearby, it stays.
     pub(super) fn place_centroid(&mut self, model: MotionModel) {
         let of_cells = Point2::new(self.null_space.frame.m13, self.null_space.frame.m23);
-        self.null_space.centroid = Self::area_centroid(&self.closed_contours()).unwrap_or(of_cells);
+        // The area of an outline that crosses itself may have its centroid anywhere.
+        let is_within = |centroid: &Point2<f64>| (centroid - of_cells).norm() <= self.null_space.frame.m11;
+        let of_area = Self::area_centroid(&self.closed_contours()).filter(is_within);
+        self.null_space.centroid = of_area.unwrap_or(of_cells);
         if !self.hides_motion_of_centroid(model) {
             return;
         }
@@ -63,7 +66,8 @@ impl OutlineMap {
     }
 }
 
-/// The point nearest to another where some linear motions are slowest, by least squares.
+/// The point nearest to another where some affine motions are slowest, by least squares. Along axes that they hardly move anything by it is where the
+/// other is.
 fn fixed_point(generators: impl Iterator<Item = Matrix3<f64>>, near: &Point2<f64>) -> Option<Point2<f64>> {
     let (mut normal, mut right) = (Matrix2::zeros(), Vector2::zeros());
     for generator in generators {

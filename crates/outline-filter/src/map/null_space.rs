@@ -82,7 +82,7 @@ impl OutlineMap {
     /// After a frame that has not shown the turn about the object's centroid: marks it as not observable.
     pub(crate) fn hide_turn(&mut self, model: MotionModel) {
         let space = &mut self.null_space;
-        if !space.holds_turn(model) {
+        if !space.holds_turn(model) && space.frame.try_inverse().is_some() {
             space.turn = space.turn.after(TurnEvent::NotSeen);
             // What tells the turn is not to be trusted: the rest of the outline says what it cannot be told from. Its centre is what moves as is
             // seen.
@@ -93,13 +93,16 @@ impl OutlineMap {
                 space.centroid = centre;
                 return;
             }
-            let mut frame = space.frame;
+            let (mut frame, is_alone) = (space.frame, space.in_body.is_empty());
             // Beside other directions its part that is a shift would be one of theirs.
-            if space.in_body.is_empty() {
+            if is_alone {
                 (frame.m13, frame.m23) = (space.centroid.x, space.centroid.y);
             }
             let Some(inverse) = frame.try_inverse() else { return };
             space.in_body.push(model.parameters_of(&(frame * space.unit_turn(model) * inverse)));
+            if !is_alone {
+                self.place_centroid(model);
+            }
         }
     }
 
@@ -331,10 +334,12 @@ impl OutlineMap {
         for direction in &self.null_space.in_body {
             let generator = model.generator(&direction[..k]);
             let centred = model.parameters_of(&(to_centred * generator * frame));
+            // A turn about another point than the middle of the cells is longer than 1.
+            let length: f64 = centred.iter().map(|c| c * c).sum();
             for _ in 0..tuning::LEAST_STEPS {
                 let change = to_centred * to_body * pose * frame;
                 let Some(step) = model.motion_between(&change, 1.0) else { break };
-                let along: f64 = step.iter().zip(&centred).map(|(a, b)| a * b).sum();
+                let along = step.iter().zip(&centred).map(|(a, b)| a * b).sum::<f64>() / length;
                 pose *= model.flow(&direction[..k], -along).into_inner();
             }
         }

@@ -80,12 +80,14 @@ impl Belief {
         let k = self.information.k;
         let Some(covariance) = scaled_inverse(&self.marginal, k) else { return };
         let Some(after) = scaled_inverse(&(covariance + added), k) else { return };
+        if self.information.add_covariance(added, [&self.marginal, &after]).is_none() {
+            return;
+        }
         for (j, span) in self.memory.effective.iter_mut().enumerate().take(k) {
             let (known, new) = (covariance[(k + j, k + j)], added[(k + j, k + j)]);
             // What a filter forgets at this rate in each step it remembers for steps over rate.
             *span *= known / (known + new);
         }
-        self.information.add_covariance(added, &after);
         self.marginal = after;
     }
 }
@@ -125,5 +127,40 @@ mod tests {
         belief.forget(&[NullDirection { direction, dual: direction }], 2.5e-7);
         let kept = before.iter().zip(belief.information.cells.own()).map(|(before, after)| after / before);
         kept.for_each(|kept| assert!((kept - 1.0).abs() < 0.01, "{kept}"));
+    }
+
+    /// With what is told of a direction gone, that of an offset b lever arms from it is known by `1 / (1 / o + b^2 P)`, P what the direction was known
+    /// to, however much larger what is added is.
+    #[test]
+    fn offsets_lose_what_they_owe_to_a_direction_that_is_forgotten_however_small_the_noise() {
+        const KNOWN: f64 = 100.0;
+        for variance in [1e-4, 1e-6, 1e-8] {
+            let mut belief = Problem::of(MotionModel::Rigid, 8, 5).belief;
+            let k = belief.parameter_count();
+            let mut direction = [0.0; MAX_PARAMETERS];
+            direction[..k].copy_from_slice(&[-0.28, 0.768, -0.576]);
+            for (_, coupling) in belief.information.cells.iter_mut() {
+                coupling.iter_mut().skip(k).for_each(|c| *c = 0.0);
+            }
+            let told_by_offsets = belief.information.with_outline_given() - belief.information.marginal();
+            for (i, row) in belief.information.dense.iter_mut().enumerate().take(2 * k) {
+                for (j, entry) in row.iter_mut().enumerate().take(2 * k) {
+                    *entry = told_by_offsets[(i, j)] + if i == j { KNOWN } else { 0.0 };
+                }
+            }
+            belief.marginal = belief.information.marginal();
+            let lever = |coupling: &[f64], own: f64| {
+                coupling.iter().zip(&direction).take(k).map(|(c, d)| c * d).sum::<f64>() / own
+            };
+            let cells = &belief.information.cells;
+            let squared: f64 = direction.iter().map(|d| d * d).sum();
+            let expected: Vec<f64> = (cells.own().iter().zip(cells.couplings()))
+                .map(|(own, coupling)| 1.0 / (1.0 / own + lever(coupling, *own).powi(2) / (KNOWN * squared)))
+                .collect();
+            belief.forget(&[NullDirection { direction, dual: direction }], variance);
+            for (found, expected) in belief.information.cells.own().iter().zip(expected) {
+                assert!((found / expected - 1.0).abs() < 1e-3, "{variance}: {found} {expected}");
+            }
+        }
     }
 }

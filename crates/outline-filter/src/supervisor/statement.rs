@@ -162,11 +162,11 @@ impl MotionFilter {
     }
 
     /// Whether the outline does not show how the object's centroid moves, as far as it is known by now: some motion that the outline does not show
-    /// would move it, and no point nearby stays under all of them. Where it does, a [velocity](Self::velocity) that is not stated is not known well
+    /// would move it, no point nearby stays under all of them, and the path does not [tell](Self::turn_is_told_by_path) the turn. Where it does, a [velocity](Self::velocity) that is not stated is not known well
     /// enough.
     #[must_use]
     pub fn hides_velocity(&self) -> bool {
-        self.track.as_ref().is_some_and(Track::hides_velocity)
+        !self.turn_is_told_by_path() && self.track.as_ref().is_some_and(Track::hides_velocity)
     }
 
     /// Why nothing is stated of the motion although frames have been taken; `None` where it is stated.
@@ -222,7 +222,7 @@ impl MotionFilter {
     /// motion is [ambiguous](Self::ambiguity), or if [`estimate`](Self::estimate) is `None`.
     #[must_use]
     pub fn velocity(&self) -> Option<PointVelocity> {
-        if self.turn_hypotheses.are_doubtful() || !self.is_stated() {
+        if self.turn_hypotheses.are_doubtful() || !self.is_stated() || self.hides_velocity() {
             return None;
         }
         self.track.as_ref()?.velocity_of_centroid(&self.state()?)

@@ -5,11 +5,9 @@ use freeform_riccati::ParameterKind;
 use super::{Track, estimate::TurnOfPose};
 
 impl Track {
-    /// Velocity of the object's centroid in a state of this track; `None` where it is not worth stating, or where the outline does not show it.
+    /// Velocity of the object's centroid in a state of this track; `None` where it is not worth stating. Whether the outline shows it
+    /// [`hides_velocity`](Self::hides_velocity) says.
     pub(crate) fn velocity_of_centroid(&self, state: &MotionState) -> Option<PointVelocity> {
-        if self.hides_velocity() {
-            return None;
-        }
         let velocity = state.velocity_of(&(self.reference.origin + self.reference.radius * self.map.centroid().coords));
         let span = self.belief.memory.shortest(self.belief.parameter_count());
         let unit = self.reference.time_unit;

@@ -166,6 +166,8 @@ pub(crate) mod update {
     /// If the last one that is taken moves them by more than so many cells, and [`BEYOND_NOISE`], the pose is on its way to another, and nothing is
     /// known of that. By less it moves to and fro where points change cells, or along a direction that few of them tell.
     pub(crate) const UNSETTLED: f64 = 2.0;
+    /// Share of a variance below which what is left of it, beside others that it goes along with, is rounding.
+    pub(crate) const ROUNDING_OF_VARIANCE: f64 = 1e-12;
     /// Determinant of a pose below which it has collapsed.
     pub(crate) const COLLAPSED: f64 = 1e-12;
     /// Share of the farthest depth of an outline that the nearest must have: a camera as close to a plane as that shows a part of it only. Rates of

@@ -68,8 +68,8 @@ pub(crate) const MOVES: f64 = 50.0;
 /// what no frame tells of.
 pub(crate) const LARGEST_MOTION: f64 = 100.0;
 pub(crate) const LARGEST_NORMAL: f64 = 10.0;
-/// Share of the farthest depth of an outline in the first frame that the nearest must have: a camera so near to a plane, or so nearly in it, that one end
-/// of an object is ten times as far as the other shows the rest of it as a line.
+/// Share of the farthest depth of an outline in the first frame that the nearest must have: a camera so near to a plane, or so nearly in it, that
+/// one end of an object is ten times as far as the other shows the rest of it as a line.
 pub(crate) const LEAST_DEPTH: f64 = 0.1;
 /// Largest squared innovation that counts, fewest of them that say something, and deviations of their mean that chance makes.
 pub(crate) const LARGEST_INNOVATION: f64 = 200.0;

@@ -110,8 +110,8 @@ impl View<'_> {
             let next = next.ok_or(proposal.iterations)?;
             let step = (0..k).map(|i| (next[i] - proposal.state[i]).abs()).fold(0.0, f64::max);
             let pose = model.flow(&next.as_slice()[..k], 1.0).into_inner() * belief.pose;
-            // A turn by more than half a circle is a smaller one the other way, and no motion has made it: few of the points lie on cells that anything
-            // is known of.
+            // A turn by more than half a circle is a smaller one the other way, and no motion has made it: few of the points lie on cells that
+            // anything is known of.
             let is_beyond_half_circle = turn_rate(&model.generator(&next.as_slice()[..k])).abs() > PI;
             if is_beyond_half_circle || pose.determinant().abs() < tuning::COLLAPSED || !self.map.is_shown_in(&pose) {
                 return Err(proposal.iterations);

@@ -112,7 +112,6 @@ fn of_a_strip_without_ends_no_velocity_is_stated_whatever_family_moves_it() {
     }
 }
 
-/// Few of the points lie on cells that anything is known of while the map is cut anew from a few frames.
 #[test]
 fn a_strip_that_a_picture_cuts_shows_no_motion_along_itself_in_any_frame_however_its_points_fall() {
     for seed in 0..16 {
