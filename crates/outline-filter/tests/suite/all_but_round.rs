@@ -76,7 +76,7 @@ fn angles_of(body: &[Point2<f64>], points: u32, random: &mut ChaCha8Rng) -> Angl
 #[test]
 fn angles_of_bodies_that_are_round_but_for_a_mark_are_told_by_frames_before_they_are_stated() {
     let mut all = Angles::default();
-    for seed in 0..12 {
+    for seed in 0..36 {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let share = random.random::<f64>();
         for body in [
@@ -91,6 +91,6 @@ fn angles_of_bodies_that_are_round_but_for_a_mark_are_told_by_frames_before_they
     }
     // Which are off depends on chance, as the few points that tell the turn do.
     assert!(all.wrong * 100 <= all.right, "{all:?}");
-    // Nor is it left out where it is known: late are 180 to 204, as the last digits of the filter fall.
-    assert!(all.right > 500 && all.right_late > 160, "{all:?}");
+    // Nor is it left out where it is known.
+    assert!(all.right > 2000 && all.right_late > 650, "{all:?}");
 }
