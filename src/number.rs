@@ -22,7 +22,11 @@ pub fn significant(value: f64, digits: usize) -> String {
 
 /// A time in seconds to a tenth of a millisecond, or with four significant digits where these say more.
 pub(crate) fn of_time(seconds: f64) -> String {
-    let text = if seconds.abs() < 1.0 { significant(seconds, 4) } else { format!("{seconds:.4}") };
+    without_zeros(if seconds.abs() < 1.0 { significant(seconds, 4) } else { format!("{seconds:.4}") })
+}
+
+/// A number without zeros at its end.
+fn without_zeros(text: String) -> String {
     text.parse::<f64>().map_or(text, |rounded| rounded.to_string())
 }
 
@@ -52,8 +56,7 @@ pub fn with_deviation(value: f64, deviation: f64) -> [String; 2] {
 /// ```
 #[must_use]
 pub fn short(value: f64) -> String {
-    let text = significant(value, 6);
-    text.parse::<f64>().map_or(text, |rounded| rounded.to_string())
+    without_zeros(significant(value, 6))
 }
 
 #[cfg(test)]

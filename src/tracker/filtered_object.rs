@@ -28,12 +28,14 @@ impl FilteredObject {
                 if step.is_accepted() { Some(time) } else { self.last_known.map(|(last_used, _)| last_used) };
             self.last_known = last_used.map(|last_used| (last_used, estimate));
         }
+        let velocity = estimate.and_then(|_| self.filter.velocity());
         Step {
             phase: Some(step.phase.into()),
             hidden: estimate.as_ref().map_or_else(Vec::new, |estimate| self.hidden(estimate)),
             estimate,
-            velocity: estimate.and_then(|_| self.filter.velocity()),
-            hides_velocity: self.filter.hides_velocity(),
+            velocity,
+            // One that is stated is shown.
+            hides_velocity: velocity.is_none() && self.filter.hides_velocity(),
             residual: step.measurement.and_then(|measurement| measurement.noise),
             innovation: step.measurement.map(|measurement| measurement.innovation),
             state: self.filter.state(),

@@ -2,8 +2,11 @@
 use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector, ProjectiveMotion};
 use nalgebra::{Matrix2, Matrix3, Point2, SMatrix, Vector2};
 
-use super::OutlineMap;
+use super::{OutlineMap, contour_area::ContourArea};
 use crate::tuning::null_space::{MOVES_MIDDLE, TAKES_PART};
+
+/// Squared velocity of a point, in the mean of those of the cells, up to which it stays.
+const STAYS: f64 = TAKES_PART * TAKES_PART;
 
 type SpanMatrix = SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>;
 
@@ -12,30 +15,27 @@ impl OutlineMap {
     /// a bent one about a centre far away.
     pub(crate) fn hides_motion_of_centroid(&self, model: MotionModel) -> bool {
         let space = &self.null_space;
-        self.squared_velocity_at(&space.centroid, model, &space.in_body) > TAKES_PART * TAKES_PART
+        self.squared_velocity_at(&space.centroid, model, &space.in_body) > STAYS
     }
 
     /// Puts the centroid at that of the area or of the cells, or, where some motion that is not shown moves this, at the point nearest to it which
     /// all such motions leave where it is: the centre of a disc of which half is seen, or the vertex of a corner that may grow. Where there
-    /// is no such point, or none nearby, it stays.
-    pub(super) fn place_centroid(&mut self, model: MotionModel) {
+    /// is no such point, or none nearby, it stays. `contours` are the closed ones of the cells.
+    pub(super) fn place_centroid(&mut self, model: MotionModel, contours: &[ContourArea]) {
         let of_cells = Point2::new(self.null_space.frame.m13, self.null_space.frame.m23);
         // The area of an outline that crosses itself may have its centroid anywhere.
         let is_within = |centroid: &Point2<f64>| (centroid - of_cells).norm() <= self.null_space.frame.m11;
-        let of_area = Self::area_centroid(&self.closed_contours()).filter(is_within);
-        self.null_space.centroid = of_area.unwrap_or(of_cells);
-        if !self.hides_motion_of_centroid(model) {
-            return;
-        }
-        let space = &self.null_space;
-        let at = |point: &Point2<f64>| self.squared_velocity_at(point, model, &space.in_body);
-        let generators = space.in_body.iter().map(|direction| model.generator(&direction[..model.parameter_count()]));
-        let fixed = fixed_point(generators, &space.centroid);
-        if at(&space.centroid) <= MOVES_MIDDLE
-            && let Some(fixed) = fixed.filter(|fixed| at(fixed) <= TAKES_PART * TAKES_PART)
-        {
-            self.null_space.centroid = fixed;
-        }
+        let centroid = Self::area_centroid(contours).filter(is_within).unwrap_or(of_cells);
+        let hidden = &self.null_space.in_body;
+        let at = |point: &Point2<f64>| self.squared_velocity_at(point, model, hidden);
+        let of_centroid = at(&centroid);
+        let fixed = if of_centroid > STAYS && of_centroid <= MOVES_MIDDLE {
+            let generators = hidden.iter().map(|direction| model.generator(&direction[..model.parameter_count()]));
+            fixed_point(generators, &centroid).filter(|fixed| at(fixed) <= STAYS)
+        } else {
+            None
+        };
+        self.null_space.centroid = fixed.unwrap_or(centroid);
     }
 
     /// The largest squared velocity of a point of the body in motions that span a space, in the mean of those of the cells; infinite where some motion

@@ -101,7 +101,7 @@ impl OutlineMap {
             let Some(inverse) = frame.try_inverse() else { return };
             space.in_body.push(model.parameters_of(&(frame * space.unit_turn(model) * inverse)));
             if !is_alone {
-                self.place_centroid(model);
+                self.place_centroid(model, &self.closed_contours());
             }
         }
     }
@@ -143,7 +143,7 @@ impl OutlineMap {
         if space.turn.is_hidden() && space.turn != TurnEvidence::Refuted {
             space.turn = space.turn.after(TurnEvent::AskedAnew);
             space.in_body.pop();
-            self.place_centroid(model);
+            self.place_centroid(model, &self.closed_contours());
         }
     }
 
@@ -222,7 +222,7 @@ impl OutlineMap {
         }
         (space.frame, space.stretch) = (to_body, centring.stretch());
         space.turn = space.turn.after(TurnEvent::AskedAnew);
-        self.place_centroid(model);
+        self.place_centroid(model, &contours);
         if self.null_space.turn == TurnEvidence::Refuted {
             self.hide_turn(model);
         }

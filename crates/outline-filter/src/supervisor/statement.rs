@@ -162,8 +162,8 @@ impl MotionFilter {
     }
 
     /// Whether the outline does not show how the object's centroid moves, as far as it is known by now: some motion that the outline does not show
-    /// would move it, no point nearby stays under all of them, and the path does not [tell](Self::turn_is_told_by_path) the turn. Where it does, a [velocity](Self::velocity) that is not stated is not known well
-    /// enough.
+    /// would move it, no point nearby stays under all of them, and the path does not [tell](Self::turn_is_told_by_path) the turn. Where it does, a
+    /// [velocity](Self::velocity) that is not stated is not known well enough.
     #[must_use]
     pub fn hides_velocity(&self) -> bool {
         !self.turn_is_told_by_path() && self.track.as_ref().is_some_and(Track::hides_velocity)

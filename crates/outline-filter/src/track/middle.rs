@@ -15,9 +15,10 @@ impl Track {
         velocity.standard_deviations().iter().all(worth).then_some(velocity)
     }
 
-    /// Whether the outline does not show how its centroid moves.
+    /// Whether the outline does not show how its centroid moves: where some of the perspective is hidden, or where a motion that it does not show moves
+    /// the centroid. Such a motion is held at none, with a deviation that says nothing of how far it may go.
     pub(crate) fn hides_velocity(&self) -> bool {
-        self.hides_perspective() || self.hides_middle()
+        self.hides_perspective() || self.map.hides_motion_of_centroid(self.model())
     }
 
     /// Whether the outline does not show some of the perspective, as an ellipse does not: nor does it show which point of the body is where then.
@@ -27,11 +28,5 @@ impl Track {
             .iter()
             .zip(self.model().parameter_kinds())
             .any(|(hidden, kind)| *hidden && *kind == ParameterKind::Perspective)
-    }
-
-    /// Whether a motion that the outline does not show moves its middle, as a straight bar moves along itself, or a bent one about a centre far away.
-    /// Such a motion is held at none, with a deviation that says nothing of how far it may go. The turning of a disc leaves its middle where it is.
-    fn hides_middle(&self) -> bool {
-        self.map.hides_motion_of_centroid(self.model())
     }
 }
