@@ -1,4 +1,4 @@
-use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector};
+use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterKind, ParameterVector};
 use nalgebra::{DMatrix, DVector, Matrix3, Point2, Projective2};
 
 use crate::{motion_estimate::MotionEstimate, process_noise::ProcessNoise};
@@ -65,15 +65,14 @@ pub struct NormalisedState {
     pub covariance_given_outline: DMatrix<f64>,
     /// Which parameters of the motion are observable.
     pub observable: [bool; MAX_PARAMETERS],
-    /// Rates that the outline does not show, such as that of the turn of a circle, or that are ambiguous: nor is it known how far the object has turned.
-    /// Of projective motion also the perspective, where it takes part in what the outline does not show.
+    /// Rates that the outline does not show, such as that of the turn of a circle, or that are ambiguous: nor is it known how far the object has
+    /// turned.
+    /// Of projective motion also the perspective, where it takes part in what the outline does not show. Velocities along axes on which the
+    /// outline does not show where the centroid is, as a straight edge does not along itself.
     pub hidden: [bool; MAX_PARAMETERS],
     /// Centroid of the object in the body frame, normalised: what turns without being seen turns about it.
     pub centroid: Point2<f64>,
 }
-
-/// Parameters of projective motion before those of the perspective.
-const PERSPECTIVE: usize = MAX_PARAMETERS - 2;
 
 impl From<NormalisedState> for MotionState {
     fn from(state: NormalisedState) -> Self {
@@ -135,8 +134,8 @@ impl MotionState {
     /// The pose as numbers. First its linear part, rigid: `angle`; similarity: `scale`, `angle`; affine and projective: `m11`, `m12`,
     /// `m21`, `m22`; then `x` and `y`, where the centre of the first outline (the mean of its points) is now, image lengths;
     /// projective also `m31`, `m32` per length, at m33 = 1 and with that centre for origin. The angle is the turn since the first frame in rad
-    /// between -pi and pi, positive where omega is. What the outline does not show is NaN; that centre, where it is not the centroid
-    /// of the object, is less certain then.
+    /// between -pi and pi, positive where omega is. What the outline does not show is NaN: also `x` or `y`, where a straight edge may have gone along
+    /// itself. Where a turn is not shown, that centre, if it is not the centroid of the object, is less certain.
     #[must_use]
     pub fn pose_parameters(&self) -> Vec<PoseParameter> {
         let k = self.model.parameter_count();
@@ -181,7 +180,12 @@ impl MotionState {
         };
         // Of a rigid motion or a similarity every number has a rate of its own.
         let is_one_by_one = self.model <= MotionModel::Similarity;
-        let is_any_hidden = self.hidden.contains(&true);
+        let is_hidden = |of: ParameterKind| {
+            let kinds = self.model.parameter_kinds().iter();
+            kinds.zip(self.hidden).any(|(kind, hidden)| *kind == of && hidden)
+        };
+        let is_perspective_hidden = is_hidden(ParameterKind::Perspective);
+        let is_any_hidden = is_hidden(ParameterKind::Rate) || is_perspective_hidden;
         for (parameter, rate_is_hidden) in list.iter_mut().zip(self.hidden) {
             if rate_is_hidden || is_any_hidden && !is_one_by_one {
                 (parameter.value, parameter.standard_deviation) = (f64::NAN, f64::INFINITY);
@@ -191,13 +195,19 @@ impl MotionState {
         let lever = self.radius * (g.fixed_view::<2, 2>(0, 0) * self.centroid.coords).norm();
         let by_unseen_turn = if is_any_hidden { lever } else { 0.0 };
         // A perspective that is not seen, such as that of an ellipse, puts another point of the body there.
-        let is_perspective_hidden = self.hidden[PERSPECTIVE..].contains(&true);
         let size = self.radius * g.fixed_view::<2, 2>(0, 0).norm();
         let by_unseen_perspective = if is_perspective_hidden { size } else { 0.0 };
+        let velocities = self.model.parameter_kinds().iter().zip(self.hidden);
+        let mut of_velocities =
+            velocities.filter(|(kind, _)| **kind == ParameterKind::Velocity).map(|(_, hidden)| hidden);
+        let is_position_hidden = [0, 1].map(|_| of_velocities.next().unwrap_or(false));
         for (name, row, start) in [("x", 0, self.origin.x), ("y", 1, self.origin.y)] {
             let mut at = entry(name, row, 2, self.radius);
             at.value += start;
             at.standard_deviation = at.standard_deviation.hypot(by_unseen_turn).hypot(by_unseen_perspective);
+            if is_position_hidden[row] {
+                (at.value, at.standard_deviation) = (f64::NAN, f64::INFINITY);
+            }
             list.push(at);
         }
         if self.model == MotionModel::Projective {

@@ -2,7 +2,7 @@
 use freeform_riccati::{is_affine, map_point_by};
 use nalgebra::{Matrix3, Point2};
 
-use super::{Frame, Pass, PointOnCell, View};
+use super::{Frame, Pass, Piece, PointOnCell, View};
 use crate::{
     map::median,
     tuning::{likelihood as tuning, measurement::MEDIAN_TO_DEVIATION},
@@ -231,11 +231,21 @@ impl View<'_> {
     }
 
     /// With offsets moved by these from where they were known.
-    fn innovations<'a>(&'a self, frame: &'a Frame, shifts: &'a [f64]) -> impl ExactSizeIterator<Item = Option<f64>> {
-        let Frame { columns, deviations, .. } = frame;
+    fn innovations<'a>(&'a self, frame: &'a Frame, shifts: &'a [f64]) -> impl Iterator<Item = Option<f64>> {
+        let Frame { columns, deviations, pieces, .. } = frame;
         let ratios = deviations.ratios();
         let ratio = move |i: usize| ratios.map_or(1.0, |ratios| ratios[i]);
-        columns.points().enumerate().map(move |(i, point)| self.innovation_of(&point, ratio(i), shifts))
+        let of_piece = |piece: &Piece| std::iter::repeat_n(self.lies_apart(frame, piece), piece.range().len());
+        let points = columns.points().zip(pieces.iter().flat_map(of_piece)).enumerate();
+        points.map(move |(i, (point, lies_apart))| match lies_apart {
+            true => None,
+            false => self.innovation_of(&point, ratio(i), shifts),
+        })
+    }
+
+    /// Whether an open piece of a contour shows nothing of an outline that has ends: it may be a part of it that has been hidden so far.
+    fn lies_apart(&self, frame: &Frame, piece: &Piece) -> bool {
+        self.map.has_ends() && !piece.closed && frame.columns.weights[piece.range()].iter().all(|weight| *weight == 0.0)
     }
 
     /// Distance of a point from the outline as it was known, as if that were exact and the point a good one; `None` where nothing was
@@ -280,20 +290,20 @@ impl FirstLook {
 }
 
 fn of_innovations(
-    innovations: impl ExactSizeIterator<Item = Option<f64>>,
+    innovations: impl Iterator<Item = Option<f64>>,
     scale: f64,
     correlation: f64,
 ) -> NegativeLogLikelihood {
-    let points = innovations.len() as f64;
-    let weighted = points * correlation;
     let square = |innovation: f64| (innovation / scale).powi(2).min(tuning::LARGEST * tuning::LARGEST);
-    let (mut known, mut unknown) = (0.0, 0.0);
+    let (mut points, mut known, mut unknown) = (0.0, 0.0, 0.0);
     for innovation in innovations {
+        points += 1.0;
         match innovation {
             Some(innovation) => known += square(innovation),
             None => unknown += 1.0,
         }
     }
+    let weighted = points * correlation;
     let squares = known + of_unknown(unknown, weighted);
     NegativeLogLikelihood { squares, of_path: 0.0, points, weighted }
 }
@@ -335,7 +345,7 @@ mod tests {
         for points in [40_u32, 400, 4000] {
             let with_unknown = |unknown: u32| {
                 let innovations = (0..points).map(|i| (i >= unknown).then_some(1.0));
-                of_innovations(innovations.collect::<Vec<_>>().into_iter(), 1.0, 1.0)
+                of_innovations(innovations, 1.0, 1.0)
             };
             let [none, few, most, all] = [0, 1, points / 2, points].map(with_unknown);
             assert!(none.all() < few.all() && few.all() < most.all() && most.all() <= all.all(), "{points}");
@@ -345,7 +355,7 @@ mod tests {
             );
             // Outliers in their place do.
             let off = (0..points).map(|i| Some(if i < points / 2 { 9.0 } else { 1.0 }));
-            let off = of_innovations(off.collect::<Vec<_>>().into_iter(), 1.0, 1.0);
+            let off = of_innovations(off, 1.0, 1.0);
             assert!(off.is_worse_than(&none), "{points}");
         }
     }

@@ -235,7 +235,7 @@ impl Track {
             covariance: in_seconds(covariance),
             covariance_given_outline: in_seconds(given_outline),
             observable,
-            hidden: self.hidden_rates(turn),
+            hidden: self.hidden_parameters(turn),
             centroid: self.map.centroid(),
         };
         Some(state.into())
@@ -270,9 +270,9 @@ impl Track {
         is_worth(deviation, span.max(memory.span.min(STEPS_KNOWN * memory.step)), displacement)
     }
 
-    /// Rates, and entries of the perspective, that take part in a motion about the centroid which the outline does not show, or in a turn that is
-    /// ambiguous.
-    pub(super) fn hidden_rates(&self, turn: TurnOfPose) -> [bool; MAX_PARAMETERS] {
+    /// Parameters about the centroid that take part in a motion which the outline does not show, or in a turn that is ambiguous: rates, entries of the
+    /// perspective, and, where such a motion moves the centroid, coordinates of this.
+    pub(super) fn hidden_parameters(&self, turn: TurnOfPose) -> [bool; MAX_PARAMETERS] {
         let (model, at) = (self.belief.model, self.centred_pose());
         let (change, kinds) = (at.about_centroid(model), model.parameter_kinds());
         let mut hidden = [false; MAX_PARAMETERS];
@@ -283,12 +283,17 @@ impl Track {
             });
         }
         let order = centred_order(model);
+        let moves_centroid = self.map.hides_motion_of_centroid(model);
         for null in self.map.null_directions(model, &self.belief.pose) {
             let centred = change * SVector::<f64, MAX_PARAMETERS>::from(null.direction);
             let least = TAKES_PART * centred.amax();
             for (entry, j) in centred.iter().zip(order) {
-                let is_velocity = kinds.get(*j).is_none_or(|kind| *kind == ParameterKind::Velocity);
-                hidden[*j] |= !is_velocity && entry.abs() > least;
+                let may_be = match kinds.get(*j) {
+                    Some(ParameterKind::Velocity) => moves_centroid,
+                    Some(_) => true,
+                    None => false,
+                };
+                hidden[*j] |= may_be && entry.abs() > least;
             }
         }
         hidden

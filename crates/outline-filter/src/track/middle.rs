@@ -23,7 +23,7 @@ impl Track {
 
     /// Whether the outline does not show some of the perspective, as an ellipse does not: nor does it show which point of the body is where then.
     fn hides_perspective(&self) -> bool {
-        let hidden = self.hidden_rates(TurnOfPose::AsTheOutlineShows);
+        let hidden = self.hidden_parameters(TurnOfPose::AsTheOutlineShows);
         hidden
             .iter()
             .zip(self.model().parameter_kinds())

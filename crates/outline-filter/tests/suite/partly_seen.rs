@@ -53,6 +53,12 @@ fn hidden(run: &MotionFilter) -> Vec<&'static str> {
     run.estimate().expect("a motion").parameters().filter(|p| p.value.is_none()).map(|p| p.name).collect()
 }
 
+/// Which parameters of the pose are not stated.
+fn pose_hidden(run: &MotionFilter) -> Vec<&'static str> {
+    let state = run.state().expect("a state");
+    state.pose_parameters().iter().filter(|p| p.value.is_nan()).map(|p| p.name).collect()
+}
+
 /// The velocity of a point that has moved as [`VELOCITY`] since the first frame, which is to be stated, and of this point.
 fn assert_states_velocity_of(point_at_first: Vector2<f64>, run: &MotionFilter, deviation: f64) {
     let stated = run.velocity().expect("a velocity");
@@ -125,5 +131,41 @@ fn a_strip_that_a_picture_cuts_shows_no_motion_along_itself_in_any_frame_however
             vec![side(-11.5), side(11.5)]
         });
         assert_eq!((hidden(&run), run.velocity()), (vec!["b1", "b2"], None), "seed {seed}");
+        // Nor does it show where the middle is, while its turn is told.
+        assert_eq!(pose_hidden(&run), ["x", "y"], "seed {seed}");
+    }
+}
+
+#[test]
+fn of_a_level_strip_without_ends_the_height_alone_is_known() {
+    let run = followed(MotionModel::Rigid, |time, along| {
+        let side = |height: f64| places(200.0, along).map(|s| Vector2::new(s, height + VELOCITY.y * time)).collect();
+        vec![side(100.0), side(130.0)]
+    });
+    assert_eq!(pose_hidden(&run), ["x"]);
+    let state = run.state().expect("a state");
+    let y = state.pose_parameters()[2];
+    let truth = 115.0 + VELOCITY.y * f64::from(FRAMES - 1) / FRAME_RATE;
+    assert!((y.value - truth).abs() < 4.0 * y.standard_deviation && y.standard_deviation < 0.2, "{y:?} for {truth}");
+}
+
+#[test]
+fn a_part_that_comes_into_view_apart_from_a_corner_does_not_turn_it_by_a_quarter() {
+    // Each side of a window cuts a leg of an angle of which the outer corner lies in it; of the end of one leg, farther down, ever more comes in.
+    for seed in 0..16 {
+        let run = followed_from(seed, MotionModel::Rigid, |time, along| {
+            let turn = nalgebra::Rotation2::new(-time);
+            let seen = |p: &Vector2<f64>| p.amax() < 35.0;
+            let legs = [Vector2::new(1.0, 0.0), Vector2::new(0.0, 1.0)];
+            let vertex = Vector2::new(-11.0, -4.0);
+            let of_leg = |i: usize| places(100.0, 0.4 * along).map(move |s| vertex + turn * (0.4 * s * legs[i]));
+            let corner: Vec<_> = of_leg(1).rev().filter(seen).chain(of_leg(0).filter(seen)).collect();
+            let end = places(100.0, 0.4 * along).map(|s| vertex + turn * Vector2::new(-36.0 + 0.4 * s, -32.0));
+            let mut arcs = vec![corner];
+            arcs.extend(Some(end.filter(seen).collect::<Vec<_>>()).filter(|points| points.len() >= 4));
+            arcs
+        });
+        let omega = run.estimate().and_then(|estimate| estimate.parameters().next()?.value).expect("a turn");
+        assert!((omega - 1.0).abs() < 0.1, "seed {seed}: {omega}");
     }
 }
