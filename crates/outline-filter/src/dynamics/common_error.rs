@@ -40,12 +40,6 @@ impl CommonError {
         Self { model, covariance, local: reference.local(model), shift: SVector::zeros() }
     }
 
-    /// Whether a deviation of the centroid is beyond a limit, in RMS radii. A turn may be known as little and nothing be wrong.
-    pub(super) fn moves_centroid_beyond(&self, limit: f64) -> bool {
-        let k = self.model.parameter_count();
-        (k - 2..k).any(|i| self.covariance[(i, i)] > limit * limit)
-    }
-
     /// Its covariance about the centroid in a pose.
     pub(super) fn covariance_in(&self, pose: &CentredPose) -> Option<CentredMatrix> {
         let map = pose.local(self.model) * self.local.try_inverse()?;

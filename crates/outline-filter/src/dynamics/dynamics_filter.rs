@@ -155,3 +155,31 @@ impl DynamicsFilter {
         of_any_size!(self, hypotheses => hypotheses.is_valid(model, setting))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Hypotheses after a step of a thirtieth of a second, of a pose whose place is known to a deviation, and of a motion of which a step is.
+    fn begun(place: f64, step: f64) -> Option<DynamicsFilter> {
+        const SECONDS: f64 = 1.0 / 30.0;
+        let covariance = |place: f64| {
+            let velocity = step / SECONDS;
+            let deviations = [0.01, place, place, 0.1, velocity, velocity];
+            StateMatrix::from_fn(|i, j| if i == j && i < deviations.len() { deviations[i].powi(2) } else { 0.0 })
+        };
+        let summary = Summary { pose: Matrix3::identity(), motion: Default::default(), covariance: covariance(place) };
+        // The outline is what the place is not known by.
+        let given_outline = covariance(0.001);
+        let place = (Point2::origin(), [].as_slice());
+        DynamicsFilter::begin(MotionModel::Rigid, Dynamics::Auto, (&summary, &given_outline), place, SECONDS)
+    }
+
+    #[test]
+    fn hypotheses_begin_once_a_step_is_known_wherever_the_object_has_gone_since_the_first_frame() {
+        for place in [0.01, 3.0] {
+            assert!(begun(place, 0.1).is_some(), "{place}");
+            assert!(begun(place, 2.0).is_none(), "{place}");
+        }
+    }
+}

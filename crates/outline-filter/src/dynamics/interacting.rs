@@ -81,7 +81,8 @@ impl<const N: usize> InteractingHypotheses<N> {
         // Poses are followed as they are measured, against the outline as it is.
         let [(mean, mut covariance), (_, measured)] = Self::about_centroid(model, (summary, given_outline), &reference);
         let common = CommonError::of_outline(model, &covariance, &measured, &reference);
-        if common.moves_centroid_beyond(tuning::UNTOLD) {
+        let deviation_of_step = |i: usize| covariance[(i, i)].sqrt() * seconds;
+        if (2 * k - 2..2 * k).any(|i| deviation_of_step(i) > tuning::UNTOLD) {
             return None;
         }
         for (i, j) in (0..2 * k).flat_map(|i| (0..k).map(move |j| (i, j))) {

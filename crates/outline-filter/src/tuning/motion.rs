@@ -102,8 +102,8 @@ pub(crate) mod dynamics {
     /// Variance of a pose, in squares of RMS radii or rad: no less than rounding, and no more than a quarter.
     pub(crate) const LEAST_VARIANCE: f64 = 1e-18;
     pub(crate) const LARGEST_VARIANCE: f64 = 0.0625;
-    /// Hypotheses begin once the outline tells the place of the object better than by this, in RMS radii: two frames of few points on a fine map may
-    /// have no cell in common, and what all poses have in common stays what it was when they began.
+    /// Hypotheses begin once a step of the centroid is known better than by this, in RMS radii: two frames of few points on a fine map may have no cell
+    /// in common. Where the object is since the first frame need not be known: an edge may have gone along itself before a corner came into view.
     pub(crate) const UNTOLD: f64 = 1.0;
     /// Terms of a series of powers of the turn in a step at most: that of two rounds has settled by then.
     pub(crate) const MOST_TERMS: u32 = 60;
