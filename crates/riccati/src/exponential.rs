@@ -7,6 +7,9 @@ const MEANINGFUL_NORM: f64 = 1e15;
 const SERIES_SIZE: f64 = 0.5;
 /// Last factorial of that series: the next term is below the rounding of the sum.
 const SERIES_TERMS: u32 = 16;
+/// Last factorials K that do for maps of norms up to n: the next term, `n^K / (K + 1)!`, is below half the rounding of `n / 2`, by which the mean
+/// differs from the identity.
+const FEWER_TERMS: [(f64, u32); 3] = [(1e-3, 6), (1e-2, 7), (0.1, 10)];
 
 /// `expm(m)`; all NaN if `m` is not finite or too large for any accuracy. Where the last row of `m` is zero,
 /// that of the result is exactly `(0, 0, 1)`.
@@ -33,9 +36,10 @@ pub(crate) fn linear_exponential(m: &Matrix2<f64>) -> [Matrix2<f64>; 2] {
     let norm = 2.0 * m.amax();
     let halvings = if norm > SERIES_SIZE { (norm / SERIES_SIZE).log2().ceil() as i32 } else { 0 };
     let small = m * 0.5_f64.powi(halvings);
+    let last = FEWER_TERMS.iter().find(|(largest, _)| norm <= *largest).map_or(SERIES_TERMS, |(_, last)| *last);
     // Horner's scheme for the sum of m^k / (k + 1)!.
     let mut mean = Matrix2::identity();
-    for k in (2..=SERIES_TERMS).rev() {
+    for k in (2..=last).rev() {
         mean = small * mean * (1.0 / f64::from(k)) + Matrix2::identity();
     }
     let mut map = small * mean + Matrix2::identity();
@@ -83,6 +87,26 @@ mod tests {
                 }
                 let found = second_exponential_quotient(z);
                 assert!((found - series).norm() < 3e-15 * series.norm().max(0.1), "z = {z}: {found} {series}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_exponential_of_a_small_map_loses_nothing_by_the_terms_that_are_left_out() {
+        for (largest, last) in FEWER_TERMS {
+            let next = (2..=last + 1).fold(1.0, |term, k| term * largest / f64::from(k));
+            assert!(next < 0.5 * f64::EPSILON * 0.5 * largest, "{largest}: {next}");
+            for size in [largest, 0.7 * largest, 0.1 * largest] {
+                let m = 0.5 * size * Matrix2::new(0.4, -1.0, 0.7, 0.3);
+                let [map, mean] = linear_exponential(&m);
+                let (mut term, mut series) = (Matrix2::identity(), Matrix2::identity());
+                for k in 2..=30 {
+                    term = m * term / f64::from(k);
+                    series += term;
+                }
+                // Relative to what differs from the identity, but for the rounding of that.
+                assert!((mean - series).amax() <= 2.0 * f64::EPSILON, "{size}: {mean} {series}");
+                assert!((map - m * series - Matrix2::identity()).amax() <= 2.0 * f64::EPSILON, "{size}: {map}");
             }
         }
     }

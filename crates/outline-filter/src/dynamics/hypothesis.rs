@@ -9,6 +9,7 @@ use super::{
     course::Course,
     step::{Step, pushed_along, turned_along},
     turned_chains::carry_turned_chains,
+    turned_motion::TurnedMotion,
 };
 
 /// State of one hypothesis for a model of k parameters, N = 3 k. Entry `j` is the error of the reference pose, `k + j` the motion, `2 k + j`
@@ -177,6 +178,9 @@ impl<const N: usize> Hypothesis<N> {
         let centre = step.centre + Vector2::new(error[k - 2], error[k - 1]) + shift;
         if self.course.accelerates() && model == MotionModel::Affine {
             carry_turned_chains(&mut self.covariance.data.0, &turn, dt);
+        } else if self.course.turns() && model == MotionModel::Affine {
+            let motion = TurnedMotion::new([&turn, &along, &pushed], [&v, &later], dt);
+            motion.carry(&mut self.covariance.data.0, self.course.has_accelerations());
         } else {
             let (transition, size) = (self.transition(step, (&turn, &along, &pushed), (&v, &later)), self.size());
             carry(&transition, &mut self.covariance, size);
@@ -293,16 +297,18 @@ impl<const N: usize> Hypothesis<N> {
         // By columns.
         let projection: [[f64; K]; K] =
             std::array::from_fn(|j| std::array::from_fn(|i| f64::from(u8::from(i == j)) - direction[i] * dual[j]));
+        // What lies beyond the entries in use is none, and stays so.
+        let blocks = self.size() / K;
         let (mean, covariance) = (&mut self.mean.data.0[0], &mut self.covariance.data.0);
         vectorised(
             #[inline(always)]
             || {
-                *mean = projected(&projection, mean);
+                *mean = projected(&projection, mean, blocks);
                 let mut columns = [[0.0; N]; N];
-                for j in 0..N {
-                    columns[j] = projected(&projection, &covariance[j]);
+                for j in 0..blocks * K {
+                    columns[j] = projected(&projection, &covariance[j], blocks);
                 }
-                for block in 0..N / K {
+                for block in 0..blocks {
                     for row in 0..K {
                         let mut sum = [0.0; N];
                         for j in 0..K {
@@ -334,11 +340,11 @@ impl<const N: usize> Hypothesis<N> {
     }
 }
 
-/// A vector whose parts of the size of a projection, given by its columns, are each projected.
+/// A vector whose first parts of the size of a projection, given by its columns, so many, are each projected; no other has entries.
 #[inline(always)]
-fn projected<const K: usize, const N: usize>(projection: &[[f64; K]; K], vector: &[f64; N]) -> [f64; N] {
+fn projected<const K: usize, const N: usize>(projection: &[[f64; K]; K], vector: &[f64; N], parts: usize) -> [f64; N] {
     let mut projected = [0.0; N];
-    for block in 0..N / K {
+    for block in 0..parts {
         for j in 0..K {
             let entry = vector[block * K + j];
             for i in 0..K {
@@ -353,15 +359,23 @@ fn projected<const K: usize, const N: usize>(projection: &[[f64; K]; K], vector:
 mod tests {
     use super::*;
 
+    /// Of a course that has accelerations, and of one that has none.
     fn check<const N: usize>() {
+        check_course::<N>(Course::Accelerating { level: 0.1, rates: true });
+        check_course::<N>(Course::ConstantGenerator);
+    }
+
+    fn check_course<const N: usize>(course: Course) {
         let k = N / 3;
+        let used = if course.has_accelerations() { N } else { 2 * k };
         let (direction, dual) = (
             CentredVector::from_fn(|i, _| if i < k { (0.7 + i as f64).sin() } else { 0.0 }),
             CentredVector::from_fn(|i, _| if i < k { (1.9 * i as f64).cos() } else { 0.0 }),
         );
-        let mean = SVector::<f64, N>::from_fn(|i, _| (0.3 + 1.1 * i as f64).sin());
-        let covariance = SMatrix::<f64, N, N>::from_fn(|i, j| (0.2 * (i * j + i + j) as f64).cos());
-        let mut hypothesis = Hypothesis { course: Course::ConstantGenerator, mean, covariance };
+        let mean = SVector::<f64, N>::from_fn(|i, _| if i < used { (0.3 + 1.1 * i as f64).sin() } else { 0.0 });
+        let entry = |i: usize, j: usize| (0.2 * (i * j + i + j) as f64).cos();
+        let covariance = SMatrix::<f64, N, N>::from_fn(|i, j| if i.max(j) < used { entry(i, j) } else { 0.0 });
+        let mut hypothesis = Hypothesis { course, mean, covariance };
         hypothesis.hold(&direction, &dual);
         let mut projection = SMatrix::<f64, N, N>::identity();
         for (block, i, j) in (0..3).flat_map(|b| (0..k).flat_map(move |i| (0..k).map(move |j| (b * k, i, j)))) {

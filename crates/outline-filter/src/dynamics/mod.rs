@@ -25,6 +25,7 @@ mod steady_change;
 mod step;
 mod to_and_fro;
 mod turned_chains;
+mod turned_motion;
 mod unmodelled_estimate;
 mod wrong_family;
 

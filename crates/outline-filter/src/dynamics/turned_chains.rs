@@ -4,12 +4,12 @@ use nalgebra::Matrix2;
 use crate::vectors::vectorised;
 
 /// Rates of affine motion: the entries of a linear map, row by row.
-const RATES: usize = 4;
+pub(super) const RATES: usize = 4;
 
 /// How a linear map carries rates: `T A T^-1` by A, in columns.
-type Carried = [[f64; RATES]; RATES];
+pub(super) type Carried = [[f64; RATES]; RATES];
 
-fn carried_by(map: &Matrix2<f64>) -> Carried {
+pub(super) fn carried_by(map: &Matrix2<f64>) -> Carried {
     let inverse = map.try_inverse().unwrap_or(*map);
     std::array::from_fn(|of| std::array::from_fn(|to| map[(to / 2, of / 2)] * inverse[(of % 2, to % 2)]))
 }
