@@ -8,6 +8,7 @@ mod handful;
 mod hints;
 mod input;
 mod interrupt;
+mod label_choice;
 mod left_out;
 mod output;
 mod overlay;
@@ -16,6 +17,7 @@ mod picture_settings;
 mod progress;
 mod reader;
 mod seen;
+mod traced_input;
 mod tracing_choice;
 
 use std::process::ExitCode;

@@ -2,8 +2,8 @@
 use std::path::{Path, PathBuf};
 
 use freeform_motion::outline_io::{
-    Channel, Difference, Margins, PicturePreview, PictureSettings, Selection, Smoothing, Tracing, TracingChoice,
-    TracingEvidence, TracingWarning, TracingWay,
+    Channel, Difference, Margins, OriginWarning, PicturePreview, PictureSettings, Selection, Smoothing, Tracing,
+    TracingChoice, TracingEvidence, TracingWarning, TracingWay,
 };
 use freeform_motion::short;
 
@@ -51,7 +51,7 @@ impl Chosen {
     }
 
     /// What is said of it where it is not to be trusted, by the codes.
-    pub(crate) fn warnings(&self, drawn: Option<&Path>) -> Vec<(TracingWarning, String)> {
+    pub(crate) fn warnings(&self, drawn: Option<&Path>) -> Vec<(OriginWarning, String)> {
         // The first is taken; a simpler way may be preferred to one of a higher score.
         let mut others: Vec<_> = self.choice.candidates.iter().skip(1).collect();
         others.sort_by(|a, b| b.score.total_cmp(&a.score));
@@ -68,7 +68,7 @@ impl Chosen {
                 format!("{warning}; {MOVING} may find it")
             }
         };
-        self.choice.warnings().map(|warning| (warning, told(warning))).collect()
+        self.choice.warnings().map(|warning| (warning.into(), told(warning))).collect()
     }
 }
 

@@ -83,9 +83,14 @@ fn read_file<T>(
 
 /// Several channels of a picture that is decoded once, in their order.
 pub(crate) fn read_picture_channels(path: &Path, channels: &[Channel]) -> Result<Vec<Arc<GrayImage>>, PictureError> {
+    Ok(Channel::all_of(read_picture_colours(path)?, channels))
+}
+
+/// A picture with its colours, as it is to be seen.
+pub(crate) fn read_picture_colours(path: &Path) -> Result<DynamicImage, PictureError> {
     let (mut picture, orientation) = read_file(path, decode_colours)?;
     picture.apply_orientation(orientation);
-    Ok(Channel::all_of(picture, channels))
+    Ok(picture)
 }
 
 /// A picture as it is to be seen.

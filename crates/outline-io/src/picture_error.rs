@@ -60,6 +60,11 @@ pub enum PictureErrorKind {
         /// Its media type.
         format: &'static str,
     },
+    /// Colours that are none of labels.
+    #[error(
+        "no label mask: its colours are neither grey nor those of a palette of labels, or parts of it are transparent"
+    )]
+    NotLabels,
     /// Video that has to be decoded first.
     #[error("{format} video is not decoded here, only uncompressed video (y4m) is")]
     CompressedVideo {

@@ -10,6 +10,8 @@ use crate::{
     choice::{PictureSample, SamplePlan, TracingChoice, choose_tracing},
     ground_picture::ground_picture,
     identity::Selection,
+    label_evidence::LabelEvidence,
+    label_pictures::LabelPicture,
     picture::read_picture_channels,
     picture_error::PictureError,
     picture_files::picture_files,
@@ -28,6 +30,9 @@ const EDGES_LOOKED_AT: usize = 6;
 /// Pictures whose edges and steps tell whether they are drawn on whole pixels: a speed that is off a whole number of pixels by a tenth shows a step
 /// of another pixel in one picture of ten.
 const STEPS_LOOKED_AT: usize = 12;
+
+/// Pictures that tell whether they are label masks.
+const LABELS_LOOKED_AT: usize = 12;
 
 /// Most pixels of these pictures, all together: those of one of the largest.
 const EDGE_PIXELS: usize = 1 << 26;
@@ -155,6 +160,27 @@ impl PicturePreview {
             return None;
         }
         Some(choose_tracing(&sample, base, &[])).filter(|choice| choice.best().is_some())
+    }
+
+    /// The files, where each holds one picture.
+    #[must_use]
+    pub fn single_files(&self) -> Option<&[PathBuf]> {
+        match self {
+            Self::Pictures(files) => Some(files),
+            Self::Files(_) | Self::Beginning(_) => None,
+        }
+    }
+
+    /// What speaks for it that the pictures are label masks, by some of them; `None` where they are none.
+    #[must_use]
+    pub fn label_evidence(&self) -> Option<LabelEvidence> {
+        let files = self.single_files()?;
+        let last = files.len().saturating_sub(1);
+        let step = files.len().div_ceil(LABELS_LOOKED_AT).max(1);
+        let mut numbers: Vec<usize> = (0..files.len()).step_by(step).chain([last]).collect();
+        numbers.dedup();
+        let readable = numbers.iter().map(|number| &files[*number]).filter(|path| path.is_file());
+        LabelEvidence::of(readable.map(|path| LabelPicture::read(path).ok()))
     }
 
     /// How far outlines that are traced with these settings may lie off, by some of the pictures; `None` where nothing tells.

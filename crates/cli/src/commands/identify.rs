@@ -157,7 +157,7 @@ impl<'a> Outcome<'a> {
         left_out: LeftOut,
         failure: Option<Failure>,
     ) -> Self {
-        let in_doubt = input.pictures().is_some_and(PictureInput::may_mistake_one_for_another);
+        let in_doubt = input.may_mistake_one_for_another();
         let doubted = |result: ObjectResult| if in_doubt { result.of_doubtful_outlines() } else { result };
         let results: Vec<ObjectResult> = tracker.results().into_iter().map(doubted).collect();
         let is_found = results.iter().any(|result| result.parameters().is_some());
@@ -180,6 +180,7 @@ impl<'a> Outcome<'a> {
         let Self { args, input, results, is_found, .. } = self;
         let mut listed = settings(&args.options, &input.name);
         listed.extend(input.pictures().map(PictureInput::listed).unwrap_or_default());
+        listed.extend(input.origin_warnings().into_iter().map(|(_, warning)| ("Warning", warning)));
         listed.push(version());
         let reason = self.failure.as_ref().map(Failure::text);
         let all_poses = format!("--trajectory writes those of all {}.", results.len());
@@ -218,8 +219,7 @@ impl<'a> Outcome<'a> {
                 table.and_then(|()| if is_pointed_to { writeln!(sink, "{POSES_OVER_TIME}") } else { Ok(()) })
             }
             IdentifyFormat::Json => {
-                let warnings = self.input.pictures().map(PictureInput::tracing_warnings).unwrap_or_default();
-                write_identify_json(&mut sink, results, b, &self.left_out, &warnings)
+                write_identify_json(&mut sink, results, b, &self.left_out, &self.input.origin_warnings())
             }
             IdentifyFormat::Csv => write_results(&mut sink, results, b.unit_in_data(ParameterKind::Velocity, "1/s")),
         };

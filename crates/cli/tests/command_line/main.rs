@@ -18,7 +18,9 @@ mod hostile_outputs;
 #[cfg(unix)]
 mod hostile_streams;
 mod identify;
+mod label_masks;
 mod memory;
+mod origin_warnings;
 mod outline;
 mod pears;
 mod picture_drawings;
