@@ -48,6 +48,7 @@ fn examples() -> Vec<Warning> {
             from: Point2::new(412.0, 96.5),
             to: Point2::new(398.2, 310.4),
             since: 0.9667,
+            until: None,
         }),
         Warning::PlaneMisfit { excess: 3.2 },
         Warning::AffineBias,

@@ -6,7 +6,7 @@ use nalgebra::Point2;
 
 use crate::column::Column;
 use crate::csv_columns::{Columns, Role};
-use crate::csv_field::{deviation, frame_number, number, text};
+use crate::csv_field::{deviation, frame_number, number, seconds, text};
 use crate::csv_rows::Rows;
 use crate::error::{Place, ReadError, ReadErrorKind};
 use crate::frame::{DEFAULT_OBJECT, OutlineFrame};
@@ -144,7 +144,7 @@ impl<R: Read> OutlineReader<R> {
             return Ok(true);
         }
         let number = self.frame_number()?;
-        let seconds = self.number(Column::Time, time)?;
+        let seconds = self.seconds(time)?;
         if number != present.frame || self.object()? != present.object {
             return Ok(false);
         }
@@ -159,7 +159,7 @@ impl<R: Read> OutlineReader<R> {
     /// Starts a new outline with the present row and hands out the one before.
     fn begin(&mut self) -> Result<Option<OutlineRows>, ReadError> {
         let frame = self.frame_number()?;
-        let time = self.number(Column::Time, self.columns.time)?;
+        let time = self.seconds(self.columns.time)?;
         let object = self.object()?.to_owned();
         let checked = self.latest.check(&object, (frame, time));
         checked.map_err(|(column, kind)| self.rows.error(Some(column), kind))?;
@@ -197,6 +197,10 @@ impl<R: Read> OutlineReader<R> {
 
     fn number(&self, column: Column, index: usize) -> Result<f64, ReadError> {
         number(self.rows.field(index)).map_err(|kind| self.rows.error(Some(column), kind))
+    }
+
+    fn seconds(&self, index: usize) -> Result<f64, ReadError> {
+        seconds(self.rows.field(index)).map_err(|kind| self.rows.error(Some(Column::Time), kind))
     }
 
     fn frame_number(&self) -> Result<u64, ReadError> {

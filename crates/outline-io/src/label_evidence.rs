@@ -11,6 +11,9 @@ const SHORT_RUN: u64 = 2;
 /// 300 pixels across a hundredth lies on its edge.
 const MOST_SCATTERED: f64 = 0.005;
 
+/// Pixels by which noise is told from labels.
+const ENOUGH_PIXELS: u64 = 4096;
+
 /// Share of the pixels at the sides of a picture that are ground.
 const LEAST_GROUND: f64 = 0.5;
 
@@ -84,6 +87,7 @@ fn borders(LabelPicture { width, height, labels }: &LabelPicture) -> Option<BTre
         return None;
     }
     let mut tallies: BTreeMap<i64, Tally> = BTreeMap::new();
+    let (mut pixels, mut runs) = (0, 0);
     for (row, line) in labels.chunks_exact(*width).enumerate() {
         let mut column = 0_usize;
         for run in line.chunk_by(|a, b| a == b) {
@@ -92,6 +96,8 @@ fn borders(LabelPicture { width, height, labels }: &LabelPicture) -> Option<BTre
                 let tally = tallies.entry(label).or_default();
                 tally.pixels += run.len() as u64;
                 tally.runs[0] += 1;
+                pixels += run.len() as u64;
+                runs += 1;
                 let beside = [column.checked_sub(1), Some(column + run.len()).filter(|end| end < width)];
                 beside.into_iter().flatten().for_each(|other| tally.border.meets(at(other, row)));
                 for column in column..column + run.len() {
@@ -106,6 +112,10 @@ fn borders(LabelPicture { width, height, labels }: &LabelPicture) -> Option<BTre
                 }
             }
             column += run.len();
+        }
+        // Noise is seen in the first rows.
+        if pixels > ENOUGH_PIXELS && pixels < SHORT_RUN * runs {
+            return None;
         }
     }
     let is_scattered = |tally: &&Tally| tally.runs.iter().any(|runs| tally.pixels < SHORT_RUN * runs);

@@ -11,6 +11,7 @@ use image::{DynamicImage, GrayImage, ImageDecoder, ImageError, ImageFormat, Imag
 
 use crate::channel::Channel;
 use crate::compressed_video::compressed_video;
+use crate::foreign_format::is_heic;
 use crate::jpeg_end::reaches_its_end;
 use crate::picture_error::{PictureError, PictureErrorKind};
 use crate::tiff_pages::has_several_pages;
@@ -108,6 +109,9 @@ fn decode_colours(source: &mut dyn Source) -> Result<(DynamicImage, Orientation)
     }
     if let Some(format) = compressed_video(start) {
         return Err(PictureErrorKind::CompressedVideo { format });
+    }
+    if is_heic(start) {
+        return Err(PictureErrorKind::Unsupported { format: "image/heic" });
     }
     let limits = limits(start);
     let reader = ImageReader::new(source).with_guessed_format()?;

@@ -55,10 +55,20 @@ pub enum PictureErrorKind {
     #[error("not a picture")]
     NotAPicture,
     /// A picture format that is not built in; three are with the feature `all-pictures` alone.
-    #[error("pictures of type {format} are not supported")]
+    #[error(
+        "pictures of type {format} are not supported: convert them to PNG, such as with ImageMagick: mogrify -format png FILES"
+    )]
     Unsupported {
         /// Its media type.
         format: &'static str,
+    },
+    /// A file of another kind.
+    #[error("{format}: {advice}")]
+    ForeignFormat {
+        /// What it is.
+        format: &'static str,
+        /// What to do.
+        advice: &'static str,
     },
     /// Colours that are none of labels.
     #[error(

@@ -11,7 +11,7 @@ const SMALLEST_OBJECT: u64 = 64;
 /// The paragraph on pictures in the help of a command.
 pub(crate) fn picture_inputs(command: &str) -> String {
     format!(
-        "Pictures: PNG, JPEG, TIFF, BMP, WebP, animated GIF, uncompressed video (y4m), a folder of pictures or a quoted \
+        "Pictures: PNG, JPEG, TIFF, BMP, WebP, PGM and PPM, animated GIF, uncompressed video (y4m), a folder of pictures or a quoted \
          pattern, in natural order (frame-9 before frame-10). Convert any other video through a pipe:\n  {}\nA picture that cannot be \
          read, differs in size from the first, or shows no object is left out with a warning.\n\nWithout --light, --dark, --threshold, \
          --background or --ring, the ways are tried on pictures of the sequence, and the one that tells an object from the ground best \

@@ -2,7 +2,6 @@ use std::io::Write as _;
 
 use freeform_drawing::{Findings, MeaningOfB, OBJECTS_PLAYED, Report, write_report};
 use freeform_motion::outline_io::OutlineUncertainty;
-use freeform_motion::riccati::ParameterKind;
 use freeform_motion::tracker::{NotStated, ObjectResult, write_results};
 use freeform_motion::{Tracker, Truth, Warning};
 
@@ -72,7 +71,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
 
     let outcome = Outcome::new(args, &input, &tracker, truth, left_out, failure);
     if !args.quiet && !input.has_pictures() {
-        hints.told().iter().for_each(|hint| warn(hint));
+        hints.told(outcome.failure.is_none() && outcome.lacks_values()).iter().for_each(|hint| warn(hint));
     }
     outcome.warn_of_objects_not_drawn(&files);
     let report = files.report.take().filter(|_| outcome.is_anything_read());
@@ -221,9 +220,14 @@ impl<'a> Outcome<'a> {
             IdentifyFormat::Json => {
                 write_identify_json(&mut sink, results, b, &self.left_out, &self.input.origin_warnings())
             }
-            IdentifyFormat::Csv => write_results(&mut sink, results, b.unit_in_data(ParameterKind::Velocity, "1/s")),
+            IdentifyFormat::Csv => write_results(&mut sink, results, b.short_unit),
         };
         written.and_then(|()| sink.flush()).map_err(|error| sink.failure(&error))
+    }
+
+    /// Whether a parameter of any object is not stated, for whatever reason.
+    fn lacks_values(&self) -> bool {
+        self.results.iter().any(|result| !result.unstated().is_empty())
     }
 
     /// Whether a parameter of any object is not known at the end that may have been known before.

@@ -9,6 +9,7 @@ mod fault_injection;
 mod files;
 mod filter;
 mod fit;
+mod foreign_formats;
 mod guides;
 mod help;
 #[cfg(unix)]
