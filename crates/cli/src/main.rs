@@ -12,6 +12,7 @@ mod label_choice;
 mod left_out;
 mod output;
 mod overlay;
+mod picture_hints;
 mod picture_input;
 mod picture_settings;
 mod progress;

@@ -9,8 +9,8 @@ use std::thread::available_parallelism;
 use freeform_drawing::{MeaningOfB, candidate_sheet};
 use freeform_motion::outline_io::{
     Channel, LabelInParts, LabelPictures, OriginWarning, OutlineUncertainty, PictureError, PictureErrorKind,
-    PicturePreview, PictureSequence, PictureSettings, TraceError, TraceSettings, TracedPicture, TracedPictures,
-    TracingEvidence, read_ahead,
+    PicturePreview, PictureSequence, PictureSettings, TraceSettings, TracedPicture, TracedPictures, TracingEvidence,
+    read_ahead,
 };
 use freeform_motion::riccati::CameraScale;
 use freeform_motion::short;
@@ -23,6 +23,7 @@ use crate::failure::{Failure, plain};
 use crate::interrupt;
 use crate::label_choice::{LabelChoice, refused_stream};
 use crate::output::WholeFile;
+use crate::picture_hints::{hint, missed_bodies};
 use crate::picture_settings::{picture_settings, sequence_settings};
 use crate::progress::Verbosity;
 use crate::seen::{Item, Missing, MissingKind};
@@ -44,6 +45,8 @@ pub(crate) struct PictureInput {
     chosen: Option<Chosen>,
     /// Whether labels are objects.
     labels: LabelChoice,
+    /// What finds bodies that are not followed.
+    missed: Option<String>,
     /// Whether nothing was given or chosen, as a stream is not to be waited for.
     is_traced_unseen: bool,
     outline_uncertainty: Option<OutlineUncertainty>,
@@ -76,6 +79,9 @@ impl PictureInput {
         if chosen.is_some() && options.channel().channel() != Channel::Luminance {
             sequence = open(&options)?;
         }
+        let missed = chosen
+            .as_ref()
+            .and_then(|_| missed_bodies(&preview, &picture_settings(&options, None, None).ok()?, &options));
         let is_read_once = preview.is_read_once();
         let is_traced_unseen = is_read_once && chosen.is_none() && !options.has_way();
         let mut input = Self::of(sequence, Some(preview), inputs, (options, chosen))?;
@@ -85,7 +91,7 @@ impl PictureInput {
             input.traced = input.traced.tracing_at_once(PICTURES_OF_CORE * cores);
         }
         input.is_traced_unseen = is_traced_unseen;
-        input.labels = labels;
+        (input.labels, input.missed) = (labels, missed);
         Ok(input)
     }
 
@@ -104,6 +110,7 @@ impl PictureInput {
             options: PictureOptions { objects: Some(ObjectsChoice::Labels), ..options.clone() },
             chosen: None,
             labels,
+            missed: None,
             is_traced_unseen: false,
             outline_uncertainty: Some(OutlineUncertainty::MaskPixel(settings.trace.pixel())),
             waiting: VecDeque::new(),
@@ -171,6 +178,7 @@ impl PictureInput {
             options,
             chosen,
             labels: LabelChoice::Greys,
+            missed: None,
             is_traced_unseen: false,
             outline_uncertainty,
             waiting: VecDeque::new(),
@@ -193,7 +201,13 @@ impl PictureInput {
         let unseen = "a stream is traced as it comes: --light is taken, as nothing else is given; 'freeform identify' on a piece of it \
                       prints the options that suit it";
         let unseen = self.is_traced_unseen.then(|| unseen.to_owned());
-        self.labels.note().into_iter().chain(self.chosen.iter().map(Chosen::note)).chain(unseen).collect()
+        self.labels
+            .note()
+            .into_iter()
+            .chain(self.chosen.iter().map(Chosen::note))
+            .chain(unseen)
+            .chain(self.missed.clone())
+            .collect()
     }
 
     /// What the outlines say of the pixels, after all have been read.
@@ -239,7 +253,7 @@ impl PictureInput {
     /// Whether two outlines of one name may be of two things: the way of tracing is in doubt, or there are more than two pictures, in the others of
     /// which what bears the name was not seen.
     pub(crate) fn may_mistake_one_for_another(&self) -> bool {
-        self.is_tracing_in_doubt() || self.frame_count().is_none_or(|count| count > 2)
+        !self.has_labels() && (self.is_tracing_in_doubt() || self.frame_count().is_none_or(|count| count > 2))
     }
 
     /// Why the way of tracing is not to be trusted.
@@ -376,24 +390,5 @@ fn described(error: &PictureError, inputs: &[PathBuf]) -> String {
             format!("{error}; pipe it: {}", through_ffmpeg(&video, &command_line_of_stdin(inputs)))
         }
         _ => plain(error),
-    }
-}
-
-/// What may help where no object is found.
-fn hint(error: &TraceError, options: &PictureOptions) -> Option<&'static str> {
-    match error {
-        TraceError::NoRing => Some("try another --ring, --ring-width or --channel"),
-        TraceError::TooSmall { .. } => Some("try a smaller --min-area, another --threshold, or --dark"),
-        TraceError::FillsPicture | TraceError::VisiblePartStraight { .. } | TraceError::NoObject { .. } => {
-            Some("try --dark or --light, or another --threshold")
-        }
-        TraceError::NoContrast { .. } if options.background.is_some() => {
-            Some("try another --background, --threshold or --channel")
-        }
-        TraceError::NoContrast { .. } if options.dark => {
-            Some("try --threshold, --light, --background median, --ring or --channel")
-        }
-        TraceError::NoContrast { .. } => Some("try --threshold, --dark, --background median, --ring or --channel"),
-        _ => None,
     }
 }

@@ -49,6 +49,7 @@ mod error;
 mod field;
 mod file_name;
 mod file_pattern;
+mod flat_bodies;
 mod foreign_format;
 mod frame;
 mod gif_animation;

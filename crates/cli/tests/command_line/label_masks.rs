@@ -173,3 +173,28 @@ fn a_label_in_two_parts_is_told_of() {
     let told = stderr(&run(&format!("outline {} --fps 25", folder.path().display()), ""));
     assert!(told.contains("frame 0, label 1: the largest part, of ") && told.contains("a label of its own"), "{told}");
 }
+
+#[test]
+fn bodies_of_drawn_pictures_that_one_threshold_leaves_out_are_told_of_with_the_options_that_find_them() {
+    for (ground, greys, are_missed) in [(0_u32, [60, 255], true), (120, [40, 250], true), (0, [200, 255], false)] {
+        let folder = tempfile::tempdir().expect("a folder");
+        // Edges are the mean of four pixels.
+        let grey = |x: u32, y: u32, frame: u32| -> u8 {
+            let near = [(0, 0), (1, 0), (0, 1), (1, 1)];
+            let value = |(dx, dy): (u32, u32)| {
+                body(x + dx, y + dy, frame).and_then(|body| greys.get(body)).map_or(ground, |grey| *grey)
+            };
+            (near.into_iter().map(value).sum::<u32>() / 4) as u8
+        };
+        write(folder.path(), |frame| GrayImage::from_fn(SIZE[0], SIZE[1], |x, y| Luma([grey(x, y, frame)])).into());
+        let input = folder.path().display();
+        let told = stderr(&run(&format!("identify {input} --fps 25"), ""));
+        let note = told.lines().find_map(|line| line.split_once("are not followed: ").map(|(_, options)| options));
+        assert_eq!(note.is_some(), are_missed, "{ground}, {greys:?}: {told}");
+        let Some((options, _)) = note.and_then(|note| note.split_once(" finds")) else { continue };
+        let mut found: Vec<f64> =
+            omegas(&identified(folder.path(), options)).into_iter().map(|(_, omega)| omega).collect();
+        found.sort_by(f64::total_cmp);
+        assert!((found[0] + 0.8).abs() < 0.1 && (found[1] - 1.2).abs() < 0.1, "{options}: {found:?}");
+    }
+}
