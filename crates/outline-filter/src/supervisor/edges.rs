@@ -18,8 +18,8 @@ impl MotionFilter {
         self.edges.found()
     }
 
-    /// Edges whose points were left out for a while, until the outline was seen to go on across them: each has the time [`until`](StandingEdge::until) then.
-    /// The last of them.
+    /// Edges whose points were left out for a while, until the outline was seen to go on across them, which is [`until`](StandingEdge::until) then;
+    /// the last of them.
     pub fn former_edges(&self) -> impl ExactSizeIterator<Item = StandingEdge> + '_ {
         self.edges.former()
     }

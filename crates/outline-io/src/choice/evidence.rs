@@ -45,8 +45,8 @@ pub struct TracingEvidence {
 }
 
 impl TracingEvidence {
-    /// Ways with their places in a list, the highest score first. [`TracingChoice::candidates`](super::TracingChoice) has in front of them the one that
-    /// is taken, whatever its score.
+    /// Ways with their places in a list, the highest score first. [`TracingChoice::candidates`](super::TracingChoice) has the one that is taken in
+    /// front of them, whatever its score.
     #[must_use]
     pub fn by_score(ways: &[Self]) -> Vec<(usize, &Self)> {
         let mut ranked: Vec<_> = ways.iter().enumerate().collect();
