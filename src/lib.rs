@@ -49,8 +49,10 @@ mod rectification;
 mod regular_map;
 mod rejection;
 mod settling;
+mod standing_edge;
 pub mod tracker;
 mod truth;
+mod velocity_unit;
 mod warning;
 
 pub use adaptive_progress::AdaptiveProgress;
@@ -75,6 +77,7 @@ pub use rectification::{Rectification, RectifyError};
 pub use rejection::with_causes;
 pub use tracker::{Tracker, TrackerSettings};
 pub use truth::{SimulatedMotion, Truth};
+pub use velocity_unit::VelocityUnit;
 pub use warning::Warning;
 
 #[cfg(doctest)]

@@ -7,6 +7,7 @@ use crate::{
     frame_ranges::FrameRanges,
     number::{of_time, significant},
     rejection::{FrameRejection, write_state_lost},
+    standing_edge::write_standing_edge,
 };
 
 /// Share of rejected frames from which on there is a warning.
@@ -294,16 +295,6 @@ fn write_two_planes(f: &mut fmt::Formatter<'_>, ambiguity: &PlaneAmbiguity) -> f
     write!(
         f,
         "two motions of a plane explain the outlines, with probabilities {first} and {second}; they differ in {parameters}"
-    )
-}
-
-fn write_standing_edge(f: &mut fmt::Formatter<'_>, edge: &StandingEdge) -> fmt::Result {
-    let [x1, y1, x2, y2] = [edge.from.x, edge.from.y, edge.to.x, edge.to.y].map(|x| significant(x, 4));
-    write!(
-        f,
-        "a straight part of the outline, from ({x1}, {y1}) to ({x2}, {y2}), does not move with the rest, as the edge of something in front of the \
-         object: it is left out from {} s on, poses before are in doubt; leave out what lies there (--margins), or give open arcs without it",
-        significant(edge.since, 4)
     )
 }
 

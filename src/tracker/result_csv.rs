@@ -2,7 +2,6 @@ use std::io::{self, Write};
 
 use freeform_estimate::{MotionEstimate, PointVelocity};
 use freeform_identify::AdaptiveDiagnostics;
-use freeform_riccati::ParameterKind;
 
 use super::{
     family::MotionFamily,
@@ -11,6 +10,7 @@ use super::{
     result::{ObjectResult, VELOCITY_NAMES},
     settings::Method,
 };
+use crate::VelocityUnit;
 use crate::adaptive_progress::AdaptiveProgress;
 
 /// Writes a trace as CSV: one row per object and frame with the parameters as identified so far. The columns are `object`, `frame`, `time`, `phase`,
@@ -160,13 +160,16 @@ fn optional(value: Option<f64>) -> String {
 }
 
 /// Writes results as CSV with one row per object and parameter, then `v1` and `v2`, the velocity of the middle of the object (motion filter). The column
-/// `reason` says why there is no value: `ambiguous`, `unobservable` or `unknown`. `unit_of_velocity` is that of b, v1 and v2: `1/s` where lengths
-/// have no name, `px/s` where they are pixels.
+/// `reason` says why there is no value: `ambiguous`, `unobservable` or `unknown`. `unit_of_velocity` is that of b, v1 and v2.
 ///
 /// # Errors
 ///
 /// Those of the sink.
-pub fn write_results(sink: &mut impl Write, results: &[ObjectResult], unit_of_velocity: &str) -> io::Result<()> {
+pub fn write_results(
+    sink: &mut impl Write,
+    results: &[ObjectResult],
+    unit_of_velocity: VelocityUnit,
+) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(sink);
     let header = [
         "object",
@@ -185,7 +188,7 @@ pub fn write_results(sink: &mut impl Write, results: &[ObjectResult], unit_of_ve
     for result in results {
         let found = result.parameters().unwrap_or_default();
         let units = result.motion.units().iter().zip(result.motion.parameter_kinds());
-        let units = units.map(|(unit, kind)| if *kind == ParameterKind::Velocity { unit_of_velocity } else { *unit });
+        let units = units.map(|(unit, kind)| unit_of_velocity.of_parameter(*kind, unit));
         for (index, (name, unit)) in result.motion.parameter_names().iter().zip(units).enumerate() {
             let known = found.get(index).map(|p| [p.value, p.standard_deviation]).unwrap_or_default();
             write_row(&mut writer, result, [*name, unit], known, result.not_stated(name))?;
@@ -197,7 +200,7 @@ pub fn write_results(sink: &mut impl Write, results: &[ObjectResult], unit_of_ve
             let velocity = result.velocity.as_ref();
             let known = velocity.map(|v| [v.velocity[index], v.standard_deviations()[index]].map(Some));
             let known = known.unwrap_or_default();
-            write_row(&mut writer, result, [*name, unit_of_velocity], known, result.velocity_not_stated())?;
+            write_row(&mut writer, result, [*name, unit_of_velocity.in_data()], known, result.velocity_not_stated())?;
         }
     }
     writer.flush()

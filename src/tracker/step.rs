@@ -50,6 +50,6 @@ pub(super) fn of_following(filter: &MotionFilter, last_known: Option<f64>) -> Ve
         (restarts > 0).then_some(Warning::Restarted { times: restarts }),
         are_many.then_some(Warning::FramesRejected { rejected, frames }),
     ];
-    let edges = filter.standing_edges().map(Warning::StandingEdge);
+    let edges = filter.standing_edges().chain(filter.former_edges()).map(Warning::StandingEdge);
     edges.chain(warnings.into_iter().flatten()).collect()
 }

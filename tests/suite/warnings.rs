@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use freeform_motion::Warning;
 use freeform_motion::estimate::PlaneEstimate;
 use freeform_motion::outline_filter::{Ambiguity, PlaneAmbiguity, PlaneSolution, Rejection, StandingEdge, WrongFamily};
-use freeform_motion::outline_io::TracingWarning;
+use freeform_motion::outline_io::{OriginWarning, TracingWarning};
 use freeform_motion::riccati::{MotionModel, PlaneMotion};
 use freeform_motion::tracker::{FrameRejection, RejectionCause};
 use nalgebra::{Point2, SMatrix};
@@ -48,6 +48,7 @@ fn examples() -> Vec<Warning> {
             from: Point2::new(412.0, 96.5),
             to: Point2::new(398.2, 310.4),
             since: 0.9667,
+            until: None,
         }),
         Warning::PlaneMisfit { excess: 3.2 },
         Warning::AffineBias,
@@ -76,6 +77,10 @@ const TRACING_EXAMPLES: [TracingWarning; 3] = [
     TracingWarning::MovesBeside { seen: 9, pictures: 24 },
 ];
 
+/// Warnings of where outlines come from that are none of tracing.
+const OF_ORIGIN: [OriginWarning; 3] =
+    [OriginWarning::FilesOutOfOrder, OriginWarning::RateAssumed, OriginWarning::Interlaced];
+
 /// Code and example of every section of the page: the lines that begin with `>`, as one.
 fn sections() -> Vec<(String, String)> {
     let sections = PAGE.split("\n### `").skip(1);
@@ -94,7 +99,8 @@ fn every_warning_stands_on_the_page_with_its_message() {
     let of_objects = examples();
     let of_objects = of_objects.iter().map(|warning| (warning.code().to_owned(), warning.to_string()));
     let of_tracing = TRACING_EXAMPLES.iter().map(|warning| (warning.code().to_owned(), warning.to_string()));
-    let expected: BTreeSet<_> = of_objects.chain(of_tracing).collect();
+    let of_origin = OF_ORIGIN.iter().map(|warning| (warning.code().to_owned(), warning.to_string()));
+    let expected: BTreeSet<_> = of_objects.chain(of_tracing).chain(of_origin).collect();
     assert_eq!(written, expected);
 }
 
@@ -108,6 +114,9 @@ fn there_is_an_example_of_every_code_of_the_enum() {
     let shown: Vec<Warning> = examples();
     assert_eq!(codes(SOURCE), shown.iter().map(Warning::code).collect());
     assert_eq!(codes(TRACING_SOURCE), TRACING_EXAMPLES.iter().map(TracingWarning::code).collect());
+    let of_tracing = TRACING_EXAMPLES.iter().map(|warning| OriginWarning::from(*warning));
+    let all: BTreeSet<_> = of_tracing.chain(OF_ORIGIN).map(OriginWarning::code).collect();
+    assert_eq!(all, OriginWarning::ALL.into_iter().map(OriginWarning::code).collect());
 }
 
 #[test]

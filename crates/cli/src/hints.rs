@@ -21,6 +21,9 @@ const FEWEST: usize = 5;
 const SLOW: f64 = 10.0;
 const FAST: f64 = 1e-4;
 
+/// Most points of outlines that may be the corners of polygons.
+const MOST_CORNERS: usize = 24;
+
 /// What to say of an input beside its results.
 #[derive(Debug, Default)]
 pub(crate) struct Hints {
@@ -28,6 +31,18 @@ pub(crate) struct Hints {
     /// Number of the first frame that has two contours in one.
     two_contours: Option<(String, u64)>,
     pace: Option<Pace>,
+    corners: Corners,
+}
+
+/// How many points the outlines have.
+#[derive(Debug, Default)]
+enum Corners {
+    #[default]
+    Unseen,
+    /// All of them so many.
+    Same(usize),
+    /// Different numbers.
+    Various,
 }
 
 /// The times of one object.
@@ -49,14 +64,22 @@ impl Hints {
                 (pace.last, pace.frames) = (time, pace.frames + 1);
             }
         }
+        if let Some(frame) = frame {
+            let count = frame.outline.point_count();
+            self.corners = match self.corners {
+                Corners::Unseen => Corners::Same(count),
+                Corners::Same(known) if known == count => Corners::Same(count),
+                _ => Corners::Various,
+            };
+        }
         if let Some(frame) = frame.filter(|_| self.looked_at < FRAMES && self.two_contours.is_none()) {
             self.looked_at += 1;
             self.two_contours = are_two_contours(&frame.outline).then(|| (frame.object.clone(), frame.frame));
         }
     }
 
-    /// What there is to say.
-    pub(crate) fn told(&self) -> Vec<String> {
+    /// What there is to say of an input, of which something is not stated.
+    pub(crate) fn told(&self, lacks_values: bool) -> Vec<String> {
         let contours = self.two_contours.as_ref().map(|(object, frame)| {
             format!(
                 "object {object}: the points of frame {frame} seem to be two contours, one after the other: add a column object, or a \
@@ -67,7 +90,14 @@ impl Hints {
         let pace = step
             .filter(|step| *step > SLOW || *step < FAST)
             .map(|step| format!("one frame every {} s: times and rates are in seconds", significant(step, 3)));
-        contours.into_iter().chain(pace).collect()
+        let corners = match self.corners {
+            Corners::Same(count) if count <= MOST_CORNERS && lacks_values => Some(format!(
+                "every outline has {count} points: if they are the corners of polygons, give points along the sides too: the \
+                 corners alone tell too little"
+            )),
+            _ => None,
+        };
+        contours.into_iter().chain(pace).chain(corners).collect()
     }
 }
 
@@ -122,7 +152,7 @@ mod tests {
     fn a_pace_that_no_camera_has_is_told_and_an_ordinary_one_is_not() {
         let told = |step: f64| {
             let pace = Pace { object: "a".to_owned(), first: 0.0, last: 9.0 * step, frames: 10 };
-            Hints { pace: Some(pace), ..Hints::default() }.told()
+            Hints { pace: Some(pace), ..Hints::default() }.told(false)
         };
         assert_eq!(told(33.3), ["one frame every 33.3 s: times and rates are in seconds"]);
         assert_eq!(told(3e-5).len(), 1);

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use freeform_drawing::MeaningOfB;
 use freeform_motion::outline_io::{
-    FilePoints, OutlineFile, OutlineFrame, OutlineReader, PictureSequence, PolygonSettings, ReadError, ReadErrorKind,
-    TableFormat, VerticalAxis, labelme_files, out_of_number_order, read_comments,
+    FilePoints, OriginWarning, OriginWarnings, OutlineFile, OutlineFrame, OutlineReader, PictureSequence,
+    PolygonSettings, ReadError, ReadErrorKind, TableFormat, VerticalAxis, labelme_files, out_of_number_order,
+    read_comments,
 };
 use freeform_motion::{SimulatedMotion, outline_of_polygon};
 
@@ -31,6 +32,8 @@ pub(crate) struct Input {
     is_stream: bool,
     /// Two files that were named in another order than their numbers have.
     out_of_order: Option<[PathBuf; 2]>,
+    /// What the table has said of its outlines and has been told.
+    told: OriginWarnings,
 }
 
 enum Source {
@@ -113,7 +116,7 @@ impl Input {
     }
 
     fn new(name: String, comments: Vec<String>, source: Source) -> Self {
-        Self { name, comments, source, is_stream: false, out_of_order: None }
+        Self { name, comments, source, is_stream: false, out_of_order: None, told: OriginWarnings::NONE }
     }
 
     fn of_pictures(pictures: PictureInput, name: String) -> Result<Self, Failure> {
@@ -212,20 +215,47 @@ impl Input {
         }
     }
 
-    /// What may be wrong with the input, before it is read.
-    pub(crate) fn warnings(&self) -> Vec<String> {
-        let mut warnings: Vec<String> = self.warning_of_order().into_iter().collect();
+    /// What may be wrong with how its outlines were found, as far as that is known, with the codes.
+    pub(crate) fn origin_warnings(&self) -> Vec<(OriginWarning, String)> {
+        let mut warnings: Vec<_> =
+            self.warning_of_order().map(|told| (OriginWarning::FilesOutOfOrder, told)).into_iter().collect();
         if matches!(&self.source, Source::File(file) | Source::Polygons(file) if file.is_rate_assumed()) {
-            warnings.push(format!("{ASSUMED_RATE} frames/s assumed, the file does not say; give the rate with --fps"));
+            let message = format!("{ASSUMED_RATE} frames/s assumed, the file does not say; give the rate with --fps");
+            warnings.push((OriginWarning::RateAssumed, message));
         }
-        let Some(pictures) = self.pictures() else { return warnings };
-        if pictures.is_interlaced() {
-            let reason = "every second line of a picture is of another moment, which frays the edges of what moves";
-            let advice = "deinterlace it, such as with ffmpeg -vf yadif";
-            warnings.push(format!("{}: the video is interlaced: {reason}; {advice}", self.name));
-        }
-        warnings.extend(pictures.warnings());
+        let of_pictures = self.pictures().map(PictureInput::origin_warnings).unwrap_or_default().into_iter();
+        warnings.extend(of_pictures.map(|(warning, message)| match warning {
+            OriginWarning::Interlaced => (warning, format!("{}: {message}", self.name)),
+            _ => (warning, message),
+        }));
+        warnings.extend(self.told_by_table().iter().map(|warning| (warning, self.of_table(warning))));
         warnings
+    }
+
+    /// What a table has said so far of how its outlines were found.
+    fn told_by_table(&self) -> OriginWarnings {
+        match &self.source {
+            Source::Csv(outlines) => outlines.warnings(),
+            Source::File(outlines) | Source::Polygons(outlines) => outlines.warnings(),
+            Source::Pictures(_) => OriginWarnings::NONE,
+        }
+    }
+
+    fn of_table(&self, warning: OriginWarning) -> String {
+        format!("{}: {warning} (column warning: {})", self.name, warning.code())
+    }
+
+    /// What the table says of its outlines and has not been told.
+    pub(crate) fn news(&mut self) -> Vec<String> {
+        let new = self.told_by_table().without(self.told);
+        self.told = self.told.and(new);
+        new.iter().map(|warning| self.of_table(warning)).collect()
+    }
+
+    /// Whether two outlines of one name may be of two things.
+    pub(crate) fn may_mistake_one_for_another(&self) -> bool {
+        self.pictures().is_some_and(PictureInput::may_mistake_one_for_another)
+            || self.told_by_table().contains(OriginWarning::TracingDoubtful)
     }
 
     /// That files were named in another order than their numbers have, as a shell orders them.
@@ -242,7 +272,8 @@ impl Input {
     /// Says how pictures are traced, if that was chosen, and what may be wrong with the input.
     pub(crate) fn tell(&self) {
         self.pictures().map(PictureInput::notes).unwrap_or_default().iter().for_each(|told| note(told));
-        self.warnings().iter().for_each(|warning| warn(warning));
+        self.origin_warnings().iter().for_each(|(_, warning)| warn(warning));
+        self.pictures().and_then(PictureInput::not_drawn).iter().for_each(|warning| warn(warning));
     }
 
     /// Says how the pictures are traced where that was chosen, and whether it is not to be trusted.
@@ -259,6 +290,11 @@ impl Input {
     /// Whether all objects of the last picture have been handed on.
     pub(crate) fn is_picture_over(&self) -> bool {
         self.pictures().is_some_and(PictureInput::is_picture_over)
+    }
+
+    /// Whether the outlines are those of labels, which are told without their surroundings.
+    pub(crate) fn has_labels(&self) -> bool {
+        self.pictures().is_some_and(PictureInput::has_labels)
     }
 
     /// Marks an object as present in a picture in which it was not traced.

@@ -8,14 +8,17 @@ mod handful;
 mod hints;
 mod input;
 mod interrupt;
+mod label_choice;
 mod left_out;
 mod output;
 mod overlay;
+mod picture_hints;
 mod picture_input;
 mod picture_settings;
 mod progress;
 mod reader;
 mod seen;
+mod traced_input;
 mod tracing_choice;
 
 use std::process::ExitCode;

@@ -8,22 +8,26 @@ use std::thread::available_parallelism;
 
 use freeform_drawing::{MeaningOfB, candidate_sheet};
 use freeform_motion::outline_io::{
-    Channel, OutlineUncertainty, PictureError, PictureErrorKind, PicturePreview, PictureSequence, PictureSettings,
-    TraceError, TraceSettings, TracedPicture, TracedPictures, TracingEvidence, TracingWarning, read_ahead,
+    Channel, LabelInParts, LabelPictures, OriginWarning, OutlineUncertainty, PictureError, PictureErrorKind,
+    PicturePreview, PictureSequence, PictureSettings, TraceSettings, TracedPicture, TracedPictures, TracingEvidence,
+    read_ahead,
 };
 use freeform_motion::riccati::CameraScale;
 use freeform_motion::short;
 use image::ImageFormat;
 
-use crate::args::{PictureOptions, through_ffmpeg};
+use crate::args::{ObjectsChoice, PictureOptions, through_ffmpeg};
 use crate::awaited::{Awaited, Waiting};
 use crate::command_line::{command_line_of_stdin, quoted};
 use crate::failure::{Failure, plain};
 use crate::interrupt;
+use crate::label_choice::{LabelChoice, refused_stream};
 use crate::output::WholeFile;
+use crate::picture_hints::{hint, missed_bodies};
 use crate::picture_settings::{picture_settings, sequence_settings};
 use crate::progress::Verbosity;
 use crate::seen::{Item, Missing, MissingKind};
+use crate::traced_input::Traced;
 use crate::tracing_choice::{Chosen, choose, options_of};
 
 /// Pictures that are traced side by side for each core, so that none stands still while the next ones are read.
@@ -36,9 +40,13 @@ pub(crate) const ASSUMED_RATE: u32 = 30;
 pub(crate) struct PictureInput {
     /// What was named for input.
     inputs: Vec<PathBuf>,
-    traced: TracedPictures<PictureSequence>,
+    traced: Traced,
     options: PictureOptions,
     chosen: Option<Chosen>,
+    /// Whether labels are objects.
+    labels: LabelChoice,
+    /// What finds bodies that are not followed.
+    missed: Option<String>,
     /// Whether nothing was given or chosen, as a stream is not to be waited for.
     is_traced_unseen: bool,
     outline_uncertainty: Option<OutlineUncertainty>,
@@ -62,11 +70,18 @@ impl PictureInput {
         let preview = PicturePreview::of_paths(paths, &sequence);
         let base = picture_settings(options, sequence.pixel_aspect(), None)?;
         base.check().map_err(Failure::unusable)?;
+        let labels = LabelChoice::of(options, &preview)?;
+        if let (LabelChoice::Labels(_), Some(files)) = (labels, preview.single_files()) {
+            return Self::of_labels(files.to_vec(), inputs, options, labels);
+        }
         let (options, chosen) = choose(&preview, &base, options, verbosity);
         draw_candidates(options.candidates.as_deref(), &preview, &base, chosen.as_ref())?;
         if chosen.is_some() && options.channel().channel() != Channel::Luminance {
             sequence = open(&options)?;
         }
+        let missed = chosen
+            .as_ref()
+            .and_then(|_| missed_bodies(&preview, &picture_settings(&options, None, None).ok()?, &options));
         let is_read_once = preview.is_read_once();
         let is_traced_unseen = is_read_once && chosen.is_none() && !options.has_way();
         let mut input = Self::of(sequence, Some(preview), inputs, (options, chosen))?;
@@ -76,7 +91,31 @@ impl PictureInput {
             input.traced = input.traced.tracing_at_once(PICTURES_OF_CORE * cores);
         }
         input.is_traced_unseen = is_traced_unseen;
+        (input.labels, input.missed) = (labels, missed);
         Ok(input)
+    }
+
+    /// Label masks in files.
+    fn of_labels(
+        files: Vec<PathBuf>,
+        inputs: Vec<PathBuf>,
+        options: &PictureOptions,
+        labels: LabelChoice,
+    ) -> Result<Self, Failure> {
+        let settings = picture_settings(options, None, None)?;
+        let traced = LabelPictures::new(files, options.fps, settings.trace).map_err(Failure::unusable)?;
+        Ok(Self {
+            inputs,
+            traced: Traced::Labels(Box::new(traced)),
+            options: PictureOptions { objects: Some(ObjectsChoice::Labels), ..options.clone() },
+            chosen: None,
+            labels,
+            missed: None,
+            is_traced_unseen: false,
+            outline_uncertainty: Some(OutlineUncertainty::MaskPixel(settings.trace.pixel())),
+            waiting: VecDeque::new(),
+            frames: 0,
+        })
     }
 
     /// Pictures in a stream.
@@ -87,6 +126,9 @@ impl PictureInput {
         (waiting, verbosity): (Waiting, Verbosity),
     ) -> Result<Self, Failure> {
         let inputs = vec![PathBuf::from(name)];
+        if options.objects == Some(ObjectsChoice::Labels) {
+            return Err(refused_stream());
+        }
         if (options.has_way() || waiting == Waiting::None) && !options.compares_with_whole() {
             let sequence = PictureSequence::from_stream(source, name, sequence_settings(options))
                 .map_err(|error| Failure::unusable(described(&error, &inputs)))?;
@@ -132,9 +174,11 @@ impl PictureInput {
         let traced = TracedPictures::new(sequence, settings).map_err(Failure::unusable)?;
         Ok(Self {
             inputs,
-            traced,
+            traced: Traced::Greys(Box::new(traced)),
             options,
             chosen,
+            labels: LabelChoice::Greys,
+            missed: None,
             is_traced_unseen: false,
             outline_uncertainty,
             waiting: VecDeque::new(),
@@ -157,11 +201,23 @@ impl PictureInput {
         let unseen = "a stream is traced as it comes: --light is taken, as nothing else is given; 'freeform identify' on a piece of it \
                       prints the options that suit it";
         let unseen = self.is_traced_unseen.then(|| unseen.to_owned());
-        self.chosen.iter().map(Chosen::note).chain(unseen).collect()
+        self.labels
+            .note()
+            .into_iter()
+            .chain(self.chosen.iter().map(Chosen::note))
+            .chain(unseen)
+            .chain(self.missed.clone())
+            .collect()
     }
 
     /// What the outlines say of the pixels, after all have been read.
     pub(crate) fn closing_remark(&self) -> Option<String> {
+        if let Some(LabelInParts { frame, label, largest, next }) = self.traced.label_in_parts() {
+            return Some(format!(
+                "frame {frame}, label {label}: the largest part, of {largest} pixels, is taken, and one of {next} pixels is not; give each object \
+                 a label of its own"
+            ));
+        }
         let aspect = self.traced.better_pixel_aspect()?;
         let symptom = "the object keeps its shape as it turns only with pixels of another aspect";
         Some(format!(
@@ -170,9 +226,23 @@ impl PictureInput {
     }
 
     /// Why the way of tracing is not to be trusted, with the codes.
-    pub(crate) fn tracing_warnings(&self) -> Vec<(TracingWarning, String)> {
+    fn tracing_warnings(&self) -> Vec<(OriginWarning, String)> {
         let drawn = self.options.candidates.as_deref();
         self.chosen.iter().flat_map(|chosen| chosen.warnings(drawn)).collect()
+    }
+
+    /// What may be wrong with how they are read and traced, with the codes.
+    pub(crate) fn origin_warnings(&self) -> Vec<(OriginWarning, String)> {
+        let mut warnings = self.tracing_warnings();
+        if self.options.fps.is_none() && self.frame_count().is_some_and(|count| count > 1) {
+            let message = format!("{ASSUMED_RATE} frames/s assumed, the pictures do not say; give the rate with --fps");
+            warnings.push((OriginWarning::RateAssumed, message));
+        }
+        if self.traced.is_interlaced() {
+            let message = format!("{}; deinterlace it, such as with ffmpeg -vf yadif", OriginWarning::Interlaced);
+            warnings.push((OriginWarning::Interlaced, message));
+        }
+        warnings
     }
 
     /// Whether the way of tracing was chosen, and may show something else than an object.
@@ -183,30 +253,23 @@ impl PictureInput {
     /// Whether two outlines of one name may be of two things: the way of tracing is in doubt, or there are more than two pictures, in the others of
     /// which what bears the name was not seen.
     pub(crate) fn may_mistake_one_for_another(&self) -> bool {
-        self.is_tracing_in_doubt() || self.frame_count().is_none_or(|count| count > 2)
+        !self.has_labels() && (self.is_tracing_in_doubt() || self.frame_count().is_none_or(|count| count > 2))
     }
 
     /// Why the way of tracing is not to be trusted.
     pub(crate) fn doubts(&self) -> Vec<String> {
-        let drawn = self.options.candidates.as_deref();
-        let undrawn = drawn.filter(|_| self.chosen.is_none());
-        let undrawn = undrawn.map(|path| format!("{}: not written, as no way of tracing was chosen", path.display()));
-        self.tracing_warnings().into_iter().map(|(_, warning)| warning).chain(undrawn).collect()
+        self.tracing_warnings().into_iter().map(|(_, warning)| warning).chain(self.not_drawn()).collect()
     }
 
-    /// What may be wrong with how they are read and traced.
-    pub(crate) fn warnings(&self) -> Vec<String> {
-        let mut warnings = self.doubts();
-        if self.options.fps.is_none() && self.frame_count().is_some_and(|count| count > 1) {
-            warnings
-                .push(format!("{ASSUMED_RATE} frames/s assumed, the pictures do not say; give the rate with --fps"));
-        }
-        warnings
+    /// That the ways of tracing that were asked for are not drawn.
+    pub(crate) fn not_drawn(&self) -> Option<String> {
+        let drawn = self.options.candidates.as_deref().filter(|_| self.chosen.is_none());
+        drawn.map(|path| format!("{}: not written, as no way of tracing was chosen", path.display()))
     }
 
-    /// Whether the pictures are of a video that says that it is interlaced.
-    pub(crate) fn is_interlaced(&self) -> bool {
-        self.traced.source().is_interlaced()
+    /// Whether every label is an object.
+    pub(crate) fn has_labels(&self) -> bool {
+        matches!(self.labels, LabelChoice::Labels(_))
     }
 
     /// Whether all objects of the last picture have been handed on.
@@ -221,7 +284,7 @@ impl PictureInput {
 
     /// Number of pictures, where it is known.
     pub(crate) fn frame_count(&self) -> Option<u64> {
-        self.traced.source().frame_count()
+        self.traced.frame_count()
     }
 
     /// Which velocity b is in these pictures.
@@ -327,24 +390,5 @@ fn described(error: &PictureError, inputs: &[PathBuf]) -> String {
             format!("{error}; pipe it: {}", through_ffmpeg(&video, &command_line_of_stdin(inputs)))
         }
         _ => plain(error),
-    }
-}
-
-/// What may help where no object is found.
-fn hint(error: &TraceError, options: &PictureOptions) -> Option<&'static str> {
-    match error {
-        TraceError::NoRing => Some("try another --ring, --ring-width or --channel"),
-        TraceError::TooSmall { .. } => Some("try a smaller --min-area, another --threshold, or --dark"),
-        TraceError::FillsPicture | TraceError::VisiblePartStraight { .. } | TraceError::NoObject { .. } => {
-            Some("try --dark or --light, or another --threshold")
-        }
-        TraceError::NoContrast { .. } if options.background.is_some() => {
-            Some("try another --background, --threshold or --channel")
-        }
-        TraceError::NoContrast { .. } if options.dark => {
-            Some("try --threshold, --light, --background median, --ring or --channel")
-        }
-        TraceError::NoContrast { .. } => Some("try --threshold, --dark, --background median, --ring or --channel"),
-        _ => None,
     }
 }

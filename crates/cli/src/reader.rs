@@ -104,7 +104,11 @@ impl Iterator for Reader<'_> {
     /// What comes next; nothing from the end of the input, an error that ends it, or Ctrl-C on.
     fn next(&mut self) -> Option<Item> {
         // What came after Ctrl-C may be cut short.
-        match self.input.next().filter(|_| !interrupt::was_asked_for())? {
+        let item = self.input.next().filter(|_| !interrupt::was_asked_for())?;
+        if !self.verbosity.is_quiet() {
+            self.input.news().iter().for_each(|told| self.progress.pause(|| warn(told)));
+        }
+        match item {
             Ok(item) => Some(item),
             Err(failure) => {
                 self.failure = Some(failure);
@@ -125,6 +129,9 @@ impl<'a> Reader<'a> {
 
     /// What an item gives, and, after the last one of a picture, the objects that were not in it but are found by their edges.
     fn events_of(&mut self, tracker: &mut Tracker, item: Item) -> Vec<Event> {
+        if self.input.has_labels() {
+            return vec![self.event_of_label(tracker, item)];
+        }
         let event = self.seeker.push(tracker, item);
         let seen_in = match &event {
             Followed::Object(_, Some((_, seen_in))) => seen_in.clone(),
@@ -148,6 +155,23 @@ impl<'a> Reader<'a> {
         }
         events.insert(0, event);
         events
+    }
+
+    /// What a label gives: where it is not, it is nowhere, so that nothing is looked for by its edges.
+    fn event_of_label(&mut self, tracker: &mut Tracker, item: Item) -> Event {
+        let (item, picture) = match item {
+            Recorded::Outline(frame, picture) => (Recorded::Outline(frame, None), picture),
+            other => (other, None),
+        };
+        match self.seeker.push(tracker, item) {
+            Followed::Object(observation, seen) => {
+                Followed::Object(observation, seen.map(|(frame, _)| (frame, picture)))
+            }
+            Followed::Gap(missing) => {
+                self.tell(&missing);
+                Followed::Gap(missing)
+            }
+        }
     }
 
     fn tell(&mut self, missing: &Missing) {

@@ -2,8 +2,8 @@
 use std::path::{Path, PathBuf};
 
 use freeform_motion::outline_io::{
-    Channel, Difference, Margins, PicturePreview, PictureSettings, Selection, Smoothing, Tracing, TracingChoice,
-    TracingEvidence, TracingWarning, TracingWay,
+    Channel, Difference, Margins, OriginWarning, PicturePreview, PictureSettings, Selection, Smoothing, Tracing,
+    TracingChoice, TracingEvidence, TracingWarning, TracingWay,
 };
 use freeform_motion::short;
 
@@ -39,7 +39,7 @@ impl Chosen {
             || self.choice.warnings().any(|warning| matches!(warning, TracingWarning::MovesBesideRest { .. }));
         let still = match best {
             Some(best) if best.rests && !is_warned() => {
-                format!("; it rests: what moves and is smaller may be found by {MOVING}")
+                format!("; its middle rests: what moves and is smaller may be found by {MOVING}")
             }
             _ => String::new(),
         };
@@ -51,11 +51,11 @@ impl Chosen {
     }
 
     /// What is said of it where it is not to be trusted, by the codes.
-    pub(crate) fn warnings(&self, drawn: Option<&Path>) -> Vec<(TracingWarning, String)> {
+    pub(crate) fn warnings(&self, drawn: Option<&Path>) -> Vec<(OriginWarning, String)> {
         // The first is taken; a simpler way may be preferred to one of a higher score.
-        let mut others: Vec<_> = self.choice.candidates.iter().skip(1).collect();
-        others.sort_by(|a, b| b.score.total_cmp(&a.score));
-        let others: Vec<String> = others.iter().take(2).map(|other| options_of(&other.tracing).join(" ")).collect();
+        let ranked = TracingEvidence::by_score(&self.choice.candidates);
+        let others = ranked.into_iter().filter(|(place, _)| *place > 0).take(2);
+        let others: Vec<String> = others.map(|(_, other)| options_of(&other.tracing).join(" ")).collect();
         let next = if others.is_empty() { String::new() } else { format!("; next best: {}", others.join(", or ")) };
         let told = |warning: TracingWarning| match (warning, drawn) {
             (TracingWarning::Doubtful, Some(path)) => {
@@ -68,7 +68,7 @@ impl Chosen {
                 format!("{warning}; {MOVING} may find it")
             }
         };
-        self.choice.warnings().map(|warning| (warning, told(warning))).collect()
+        self.choice.warnings().map(|warning| (warning.into(), told(warning))).collect()
     }
 }
 

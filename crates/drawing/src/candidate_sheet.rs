@@ -59,9 +59,11 @@ impl Ranked<'_> {
 
 /// The ways that are drawn, the highest score first; the last of them is the one taken where it is not among the best.
 fn ranked(candidates: &[TracingEvidence]) -> Vec<Ranked<'_>> {
-    let mut by_score: Vec<_> = candidates.iter().enumerate().collect();
-    by_score.sort_by(|(_, a), (_, b)| b.score.total_cmp(&a.score));
-    let ways = (1..).zip(by_score).map(|(rank, (place, evidence))| Ranked { rank, is_taken: place == 0, evidence });
+    let ways = (1..).zip(TracingEvidence::by_score(candidates)).map(|(rank, (place, evidence))| Ranked {
+        rank,
+        is_taken: place == 0,
+        evidence,
+    });
     let (mut best, others): (Vec<_>, Vec<_>) = ways.partition(|way| way.rank <= WAYS);
     if let Some(taken) = others.into_iter().find(|way| way.is_taken) {
         best.truncate(WAYS - 1);

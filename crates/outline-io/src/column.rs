@@ -19,6 +19,8 @@ pub enum Column {
     Contour,
     /// Standard deviation of the point along the normal of the contour; optional, empty where it is not known.
     Deviation,
+    /// What the program that found the outlines said of them, see [`OriginWarnings`](crate::OriginWarnings); optional.
+    Warning,
 }
 
 impl Column {
@@ -34,6 +36,7 @@ impl Column {
             Self::Arc => "arc",
             Self::Contour => "contour",
             Self::Deviation => "deviation",
+            Self::Warning => "warning",
         }
     }
 }

@@ -1,10 +1,12 @@
+use crate::foreign_format::is_heic;
+
 /// Name of the kind of compressed video that a file begins like, if it does.
 pub(crate) fn compressed_video(start: &[u8]) -> Option<&'static str> {
     let at = |offset: usize, mark: &[u8]| start.get(offset..).is_some_and(|rest| rest.starts_with(mark));
     // A box begins with its size, in which a text would be larger than any file.
     let is_box = |name: &[u8]| start.first().is_some_and(|high| *high < b' ') && at(4, name);
     // Pictures come in boxes too.
-    if image::guess_format(start).is_ok() {
+    if image::guess_format(start).is_ok() || is_heic(start) {
         None
     } else if is_box(b"ftypqt") || [b"moov", b"mdat", b"wide", b"free", b"skip"].into_iter().any(|name| is_box(name)) {
         Some("QuickTime")

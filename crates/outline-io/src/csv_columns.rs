@@ -15,6 +15,7 @@ pub(crate) struct Columns {
     pub(crate) arc: Option<usize>,
     pub(crate) contour: Option<usize>,
     pub(crate) deviation: Option<usize>,
+    pub(crate) warning: Option<usize>,
 }
 
 /// What a column is to the rows of one outline.
@@ -40,7 +41,9 @@ impl Columns {
         let arc = position(header, Column::Arc)?;
         let contour = position(header, Column::Contour)?;
         let deviation = position(header, Column::Deviation)?;
-        Ok(Self { frame, time, x, y, object, arc, contour, deviation })
+        // Columns of this name may be those of another program, who may have several.
+        let warning = position(header, Column::Warning).unwrap_or_default();
+        Ok(Self { frame, time, x, y, object, arc, contour, deviation, warning })
     }
 
     /// The role of the column at an index.
@@ -49,7 +52,9 @@ impl Columns {
             _ if index == self.x => Role::Coordinate(0),
             _ if index == self.y => Role::Coordinate(1),
             _ if Some(index) == self.deviation => Role::Deviation,
-            _ if [Some(self.frame), Some(self.time), self.object, self.arc, self.contour].contains(&Some(index)) => {
+            _ if [Some(self.frame), Some(self.time), self.object, self.arc, self.contour, self.warning]
+                .contains(&Some(index)) =>
+            {
                 Role::Outline
             }
             _ => Role::Ignored,

@@ -30,6 +30,23 @@ pub(crate) fn number(field: &[u8]) -> Result<f64, ReadErrorKind> {
     Ok(value)
 }
 
+/// A time in seconds.
+pub(crate) fn seconds(field: &[u8]) -> Result<f64, ReadErrorKind> {
+    number(field).map_err(|kind| match kind {
+        ReadErrorKind::NotANumber { text } if is_clock_or_date(&text) => ReadErrorKind::NotSeconds { text },
+        other => other,
+    })
+}
+
+/// Whether a text is like `10:00:01.5` or `2024-05-01`: it begins with a digit and has two numbers with a colon, or three with hyphens or slashes
+/// between.
+fn is_clock_or_date(text: &str) -> bool {
+    let of_digits = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+    let date = text.get(..text.len().min(10)).unwrap_or_default();
+    let is_date = ['-', '/'].iter().any(|mark| date.split(*mark).filter(|part| of_digits(part)).count() == 3);
+    is_date || text.split(':').take(2).filter(|part| of_digits(part)).count() == 2
+}
+
 /// A standard deviation: a positive number, or none where nothing stands.
 pub(crate) fn deviation(field: &[u8]) -> Result<Option<f64>, ReadErrorKind> {
     if field.trim_ascii().is_empty() {

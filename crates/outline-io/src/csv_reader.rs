@@ -6,15 +6,16 @@ use nalgebra::Point2;
 
 use crate::column::Column;
 use crate::csv_columns::{Columns, Role};
-use crate::csv_field::{deviation, frame_number, number, text};
+use crate::csv_field::{deviation, frame_number, number, seconds, text};
 use crate::csv_rows::Rows;
 use crate::error::{Place, ReadError, ReadErrorKind};
 use crate::frame::{DEFAULT_OBJECT, OutlineFrame};
 use crate::latest_frames::LatestFrames;
+use crate::origin_warning::OriginWarnings;
 use crate::outline_rows::OutlineRows;
 
-/// Reads outlines one by one from CSV with the header `frame,time,x,y` and the optional columns `object`, `arc`, `contour` and
-/// `deviation`.
+/// Reads outlines one by one from CSV with the header `frame,time,x,y` and the optional columns `object`, `arc`, `contour`,
+/// `deviation` and `warning`.
 ///
 /// The columns may stand in any order; others are ignored. Lines that begin with `#` are comments. The last comment before the first row is the
 /// header where that row has numbers in place of names, as `numpy.savetxt` writes it. Frame numbers may be written as floats, such as `2.0`. Fields
@@ -26,6 +27,7 @@ use crate::outline_rows::OutlineRows;
 /// - With `arc` values it is open, every value one arc. An arc without two different points is dropped, unless nothing
 ///   remains.
 /// - Points that repeat their neighbour are kept.
+/// - `warning` values say how the outlines were found, see [`warnings`](Self::warnings).
 /// - `deviation` values are the standard deviations of points along the normal of the contour, in the unit of x and y: those of all
 ///   points of an outline, or of none.
 ///
@@ -43,6 +45,8 @@ pub struct OutlineReader<R> {
     /// The outline whose rows are being read.
     present: Option<OutlineRows>,
     latest: LatestFrames,
+    /// Of all rows read.
+    warnings: OriginWarnings,
     /// Comes after the outline that was complete before it.
     failure: Option<ReadError>,
     ended: bool,
@@ -77,13 +81,28 @@ impl<R: Read> OutlineReader<R> {
     /// Goes on with a file whose header has been read.
     pub(crate) fn with_columns(rows: Rows<R>, columns: Columns) -> Self {
         let roles = (0..rows.field_count()).map(|index| columns.role(index)).collect();
-        Self { rows, columns, roles, present: None, latest: LatestFrames::default(), failure: None, ended: false }
+        Self {
+            rows,
+            columns,
+            roles,
+            present: None,
+            latest: LatestFrames::default(),
+            warnings: OriginWarnings::default(),
+            failure: None,
+            ended: false,
+        }
     }
 
     /// Whether the header has the column `deviation`.
     #[must_use]
     pub fn has_deviation_column(&self) -> bool {
         self.columns.deviation.is_some()
+    }
+
+    /// What the rows read so far say of how their outlines were found, in the column `warning`.
+    #[must_use]
+    pub const fn warnings(&self) -> OriginWarnings {
+        self.warnings
     }
 
     /// Reads one row; returns the outline that it completes, if any.
@@ -102,6 +121,10 @@ impl<R: Read> OutlineReader<R> {
             Some(Ok(stated)) => stated,
             None => None,
         };
+        if let Some(index) = self.columns.warning.filter(|index| !self.rows.same_as_before(*index)) {
+            let told = OriginWarnings::of_text(&String::from_utf8_lossy(self.rows.field(index)));
+            self.warnings = self.warnings.and(told);
+        }
         let continued = match &self.present {
             Some(present) => self.continues(present)?,
             None => false,
@@ -121,7 +144,7 @@ impl<R: Read> OutlineReader<R> {
             return Ok(true);
         }
         let number = self.frame_number()?;
-        let seconds = self.number(Column::Time, time)?;
+        let seconds = self.seconds(time)?;
         if number != present.frame || self.object()? != present.object {
             return Ok(false);
         }
@@ -136,7 +159,7 @@ impl<R: Read> OutlineReader<R> {
     /// Starts a new outline with the present row and hands out the one before.
     fn begin(&mut self) -> Result<Option<OutlineRows>, ReadError> {
         let frame = self.frame_number()?;
-        let time = self.number(Column::Time, self.columns.time)?;
+        let time = self.seconds(self.columns.time)?;
         let object = self.object()?.to_owned();
         let checked = self.latest.check(&object, (frame, time));
         checked.map_err(|(column, kind)| self.rows.error(Some(column), kind))?;
@@ -174,6 +197,10 @@ impl<R: Read> OutlineReader<R> {
 
     fn number(&self, column: Column, index: usize) -> Result<f64, ReadError> {
         number(self.rows.field(index)).map_err(|kind| self.rows.error(Some(column), kind))
+    }
+
+    fn seconds(&self, index: usize) -> Result<f64, ReadError> {
+        seconds(self.rows.field(index)).map_err(|kind| self.rows.error(Some(Column::Time), kind))
     }
 
     fn frame_number(&self) -> Result<u64, ReadError> {

@@ -42,7 +42,7 @@ impl<R: Read> Rows<R> {
         // The csv crate takes a byte order mark off too, but only where the first read returns all of it.
         let mut start = Vec::new();
         let head = source.by_ref().take(HEAD_LENGTH).read_to_end(&mut start);
-        if let Some(kind) = head.err().map(ReadErrorKind::Io).or_else(|| not_csv(&start)) {
+        if let Some(kind) = head.err().map(ReadErrorKind::Io).or_else(|| not_csv(&start, &file)) {
             return Err(ReadError { place: Place { file, span: None, column: None }, kind });
         }
         if start.starts_with(b"\xef\xbb\xbf") {

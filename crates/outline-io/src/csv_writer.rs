@@ -6,6 +6,7 @@ use freeform_curve_fit::Outline;
 use crate::column::Column;
 use crate::csv_field::NUMBER_LIMIT;
 use crate::frame::{DEFAULT_OBJECT, OutlineFrame};
+use crate::origin_warning::OriginWarnings;
 use crate::rounding::Rounding;
 use crate::write_error::WriteError;
 
@@ -25,6 +26,9 @@ pub struct WriterOptions {
     /// Round coordinates to this share of the RMS radius of the first outline or better, and times to a nanosecond;
     /// `None` for all digits.
     pub resolution: Option<f64>,
+    /// Write these into the column `warning`, which is there only if there are any.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub warnings: OriginWarnings,
 }
 
 impl WriterOptions {
@@ -69,6 +73,8 @@ pub struct OutlineWriter<W: Write> {
     writer: csv::Writer<W>,
     options: WriterOptions,
     rounding: Rounding,
+    /// Those of the options as text.
+    warnings: String,
     /// Holds one number as text.
     text: Vec<u8>,
 }
@@ -85,10 +91,11 @@ impl<W: Write> OutlineWriter<W> {
         let arc = options.arc_column.then_some(Column::Arc);
         let contour = options.contour_column.then_some(Column::Contour);
         let deviation = options.deviation_column.then_some(Column::Deviation);
-        writer
-            .write_record(required.chain(object).chain(arc).chain(contour).chain(deviation).map(|column| column.name()))
-            .map_err(io_error)?;
-        Ok(Self { writer, options, rounding: Rounding::to_share(options.resolution), text: Vec::new() })
+        let warning = (!options.warnings.is_empty()).then_some(Column::Warning);
+        let optional = object.into_iter().chain(arc).chain(contour).chain(deviation).chain(warning);
+        writer.write_record(required.chain(optional).map(|column| column.name())).map_err(io_error)?;
+        let rounding = Rounding::to_share(options.resolution);
+        Ok(Self { writer, options, rounding, warnings: options.warnings.to_string(), text: Vec::new() })
     }
 
     /// Writes one outline.
@@ -126,6 +133,9 @@ impl<W: Write> OutlineWriter<W> {
                         Some(deviation) => self.number(deviation)?,
                         None => self.writer.write_field("").map_err(io_error)?,
                     }
+                }
+                if !self.warnings.is_empty() {
+                    self.writer.write_field(&self.warnings).map_err(io_error)?;
                 }
                 self.writer.write_record(None::<&[u8]>).map_err(io_error)?;
             }

@@ -85,6 +85,14 @@ pub enum ReadErrorKind {
         /// The command that unpacks it.
         unpack: &'static str,
     },
+    /// A file of another kind.
+    #[error("{format}: {advice}")]
+    ForeignFormat {
+        /// What it is.
+        format: &'static str,
+        /// What to do.
+        advice: &'static str,
+    },
     /// Text in UTF-16, as spreadsheets save it.
     #[error("the text is UTF-16, expected UTF-8: save it as such, or use iconv -f UTF-16 -t UTF-8")]
     Utf16,
@@ -220,6 +228,12 @@ pub enum ReadErrorKind {
     /// Text where a number should be.
     #[error("{text:?} is not a number")]
     NotANumber {
+        /// The field, shortened.
+        text: String,
+    },
+    /// A date or a time of day where seconds should be.
+    #[error("{text:?} is a date or a time of day: give seconds, such as those since the first frame")]
+    NotSeconds {
         /// The field, shortened.
         text: String,
     },

@@ -1,5 +1,6 @@
 //! What is taken for CSV and is none.
 use crate::error::ReadErrorKind;
+use crate::foreign_format::foreign_format;
 
 /// Bytes at the beginning of a file that tell.
 pub(crate) const HEAD_LENGTH: u64 = 6;
@@ -13,8 +14,8 @@ const COMPRESSED: [(&[u8], &str, &str); 5] = [
     (b"PK\x03\x04", "zip", "unzip -p"),
 ];
 
-/// Why a file that begins so is no CSV, if that is seen at once.
-pub(crate) fn not_csv(start: &[u8]) -> Option<ReadErrorKind> {
+/// Why a file of this name that begins so is no CSV, if that is seen at once.
+pub(crate) fn not_csv(start: &[u8], name: &str) -> Option<ReadErrorKind> {
     if start.starts_with(b"\xff\xfe") || start.starts_with(b"\xfe\xff") {
         return Some(ReadErrorKind::Utf16);
     }
@@ -25,6 +26,9 @@ pub(crate) fn not_csv(start: &[u8]) -> Option<ReadErrorKind> {
     let zeros: Vec<bool> = start.iter().map(|byte| *byte == 0).collect();
     if start.len() as u64 == HEAD_LENGTH && zeros[0] != zeros[1] && zeros.iter().skip(2).eq(zeros.iter().take(4)) {
         return Some(ReadErrorKind::Utf16);
+    }
+    if let Some((format, advice)) = foreign_format(start, name) {
+        return Some(ReadErrorKind::ForeignFormat { format, advice });
     }
     let known = COMPRESSED.iter().find(|(mark, ..)| start.starts_with(mark));
     known.map(|&(_, format, unpack)| ReadErrorKind::Compressed { format, unpack })

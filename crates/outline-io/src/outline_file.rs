@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::csv_writer::{OutlineWriter, WriterOptions};
 use crate::error::{Place, ReadError, ReadErrorKind};
 use crate::frame::OutlineFrame;
+use crate::origin_warning::OriginWarnings;
 use crate::polygon_error::PolygonError;
 use crate::polygons::{FILE_LIMIT, PolygonOutlines, PolygonSettings, begins_like_polygons, failed, read_polygons};
 use crate::write_error::WriteError;
@@ -107,11 +108,17 @@ pub enum FilePoints {
 
 /// The outlines of a file that is read whole or at random, and so is no stream.
 pub struct OutlineFile {
-    outlines: Box<dyn Iterator<Item = Result<OutlineFrame, ReadError>>>,
+    outlines: Outlines,
     comments: String,
     is_rate_assumed: bool,
     has_deviation_column: bool,
     points: FilePoints,
+}
+
+enum Outlines {
+    #[cfg(feature = "parquet")]
+    Parquet(Box<crate::parquet_reader::ParquetReader>),
+    Polygons(std::vec::IntoIter<Result<OutlineFrame, ReadError>>),
 }
 
 impl std::fmt::Debug for OutlineFile {
@@ -131,7 +138,8 @@ impl OutlineFile {
             let reader = crate::parquet_reader::ParquetReader::open(path)?;
             let (comments, has_deviation_column) = (reader.comments().to_owned(), reader.has_deviation_column());
             let points = FilePoints::Measured;
-            Ok(Self { outlines: Box::new(reader), comments, is_rate_assumed: false, has_deviation_column, points })
+            let outlines = Outlines::Parquet(Box::new(reader));
+            Ok(Self { outlines, comments, is_rate_assumed: false, has_deviation_column, points })
         }
         #[cfg(not(feature = "parquet"))]
         {
@@ -182,7 +190,7 @@ impl OutlineFile {
 
     fn of_polygons(files: &[(String, Vec<u8>)], settings: &PolygonSettings) -> Result<Self, ReadError> {
         let PolygonOutlines { outlines, is_rate_assumed } = read_polygons(files, settings)?;
-        let outlines = Box::new(outlines.into_iter());
+        let outlines = Outlines::Polygons(outlines.into_iter());
         let points = FilePoints::Corners;
         Ok(Self { outlines, comments: String::new(), is_rate_assumed, has_deviation_column: false, points })
     }
@@ -197,6 +205,16 @@ impl OutlineFile {
     #[must_use]
     pub fn has_deviation_column(&self) -> bool {
         self.has_deviation_column
+    }
+
+    /// What the rows read so far say of how their outlines were found, in the column `warning`; polygons say nothing.
+    #[must_use]
+    pub const fn warnings(&self) -> OriginWarnings {
+        match &self.outlines {
+            #[cfg(feature = "parquet")]
+            Outlines::Parquet(reader) => reader.warnings(),
+            Outlines::Polygons(_) => OriginWarnings::NONE,
+        }
     }
 
     /// Whether the rate of the frames is neither given nor in the file: 30 frames per second are assumed then.
@@ -228,6 +246,10 @@ impl Iterator for OutlineFile {
     type Item = Result<OutlineFrame, ReadError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        self.outlines.next()
+        match &mut self.outlines {
+            #[cfg(feature = "parquet")]
+            Outlines::Parquet(reader) => reader.next(),
+            Outlines::Polygons(outlines) => outlines.next(),
+        }
     }
 }

@@ -5,6 +5,7 @@ use crate::column::Column;
 use crate::csv_field::{NUMBER_LIMIT, positive, quoted_start};
 use crate::error::ReadErrorKind;
 use crate::frame::{DEFAULT_OBJECT, NAME_LIMIT};
+use crate::origin_warning::OriginWarnings;
 use crate::parquet_columns::{Arity, Found};
 use crate::parquet_leaf::{Cells, Values};
 
@@ -41,6 +42,8 @@ pub(crate) struct Batch {
     pub(crate) contour: Marks,
     /// Standard deviations of the points, NaN where none is stated; empty where the file has no such column.
     pub(crate) deviation: Vec<f64>,
+    /// Those of all rows.
+    pub(crate) warnings: OriginWarnings,
 }
 
 /// What is wrong in which of the rows just read, and in which column.
@@ -91,6 +94,7 @@ impl Batch {
         self.x.append(&mut other.x);
         self.y.append(&mut other.y);
         self.deviation.append(&mut other.deviation);
+        self.warnings = self.warnings.and(other.warnings);
         for (marks, new) in [(&mut self.arc, other.arc), (&mut self.contour, other.contour)] {
             match (marks, new) {
                 (Marks::OfRows(marks), Marks::OfRows(mut new)) | (Marks::OfPoints(marks), Marks::OfPoints(mut new)) => {
@@ -208,6 +212,21 @@ pub(crate) fn names(found: Option<&Found>, cells: Option<&Cells>, rows: usize) -
         all.push(Arc::clone(&latest));
     }
     (all, None)
+}
+
+/// What a column of texts says of how outlines were found.
+pub(crate) fn warnings(cells: &Cells) -> OriginWarnings {
+    let Values::Text(texts) = &cells.values else { return OriginWarnings::default() };
+    let mut latest: &[u8] = &[];
+    let mut all = OriginWarnings::default();
+    for text in texts {
+        // Nearly always the same.
+        if text.data() != latest {
+            latest = text.data();
+            all = all.and(OriginWarnings::of_text(&String::from_utf8_lossy(latest)));
+        }
+    }
+    all
 }
 
 /// Coordinates, and where those of every row end.

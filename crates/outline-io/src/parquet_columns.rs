@@ -50,6 +50,7 @@ pub(crate) struct TableColumns {
     pub(crate) arc: Option<Found>,
     pub(crate) contour: Option<Found>,
     pub(crate) deviation: Option<Found>,
+    pub(crate) warning: Option<Found>,
 }
 
 /// Whether frames are needed.
@@ -89,6 +90,8 @@ impl TableColumns {
             arc: find(Column::Arc)?,
             contour: find(Column::Contour)?,
             deviation: find(Column::Deviation)?,
+            // Columns of this name may be those of another program, of any type.
+            warning: find(Column::Warning).unwrap_or_default().filter(|found| found.arity == Arity::One),
         };
         columns.check(schema)?;
         Ok(columns)
@@ -103,7 +106,8 @@ impl TableColumns {
 
     /// Every column that is read.
     pub(crate) fn all(&self) -> impl Iterator<Item = &Found> {
-        let optional = [&self.frame, &self.time, &self.object, &self.arc, &self.contour, &self.deviation];
+        let optional =
+            [&self.frame, &self.time, &self.object, &self.arc, &self.contour, &self.deviation, &self.warning];
         optional.into_iter().flatten().chain([&self.x, &self.y])
     }
 
@@ -154,6 +158,7 @@ fn find(schema: &SchemaDescriptor, column: Column) -> Result<Option<Found>, Head
     }
     let expected = match column {
         Column::Object => "text or whole numbers",
+        Column::Warning => "text",
         Column::Frame | Column::Time => "numbers",
         Column::X | Column::Y | Column::Deviation => "lists of numbers, or numbers",
         Column::Arc | Column::Contour => "lists of whole numbers, or whole numbers",
@@ -165,6 +170,7 @@ fn find(schema: &SchemaDescriptor, column: Column) -> Result<Option<Found>, Head
     let is_simple = positions.next().is_none() && descriptor.max_rep_level() <= 1;
     let kind = LeafKind::of(&descriptor).filter(|kind| match column {
         Column::Object => !matches!(kind, LeafKind::Float | LeafKind::Double),
+        Column::Warning => *kind == LeafKind::Text,
         _ => *kind != LeafKind::Text,
     });
     let Some(kind) = kind.filter(|_| is_simple) else {

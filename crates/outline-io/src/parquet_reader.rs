@@ -9,6 +9,7 @@ use crate::error::{Place, ReadError, ReadErrorKind, Span};
 use crate::frame::OutlineFrame;
 use crate::latest_frames::LatestFrames;
 use crate::natural_order::natural_order;
+use crate::origin_warning::OriginWarnings;
 use crate::outline_rows::OutlineRows;
 use crate::parquet_batch::{Batch, Marks, NO_MARK};
 use crate::parquet_columns::{Layout, Needed};
@@ -23,7 +24,8 @@ const SORT_LIMIT: usize = 1 << 26;
 const ROW_COST: usize = 8;
 
 /// Reads outlines one by one from Parquet: one row per outline with the columns `frame`, `time`, `x` and `y`, the last two lists of
-/// numbers in the order of the contour, and the optional columns `object`, `arc`, `contour` and `deviation`.
+/// numbers in the order of the contour, and the optional columns `object`, `arc`, `contour`, `deviation`
+/// and `warning`.
 ///
 /// The columns may stand in any order; others are not read. Numbers may be of any type, and `object` text or whole numbers.
 ///
@@ -50,6 +52,8 @@ pub struct ParquetReader {
     /// Arc and contour of the latest point.
     mark: (i64, i64),
     latest: LatestFrames,
+    /// Of all rows at hand so far.
+    warnings: OriginWarnings,
     unpacked: Unpacked,
     /// Comes after the outline that was complete before it.
     failure: Option<ReadError>,
@@ -101,6 +105,12 @@ impl ParquetReader {
         self.table.columns.deviation.is_some()
     }
 
+    /// What the rows read so far say of how their outlines were found, in the column `warning`: text, one for each row.
+    #[must_use]
+    pub const fn warnings(&self) -> OriginWarnings {
+        self.warnings
+    }
+
     fn of(table: Table) -> Result<Self, ReadError> {
         let batches = table.batches(Wanted::All);
         let (batch, latest) = (Batch::default(), LatestFrames::default());
@@ -114,6 +124,7 @@ impl ParquetReader {
             present: None,
             mark: (NO_MARK, NO_MARK),
             latest,
+            warnings: OriginWarnings::default(),
             unpacked,
             failure: None,
             ended: false,
@@ -156,6 +167,7 @@ impl ParquetReader {
             if let Some(error) = error {
                 return Err(error);
             }
+            self.warnings = self.warnings.and(batch.warnings);
             self.batch.append(batch);
             if self.batch.x.len() + ROW_COST * self.batch.rows() > SORT_LIMIT {
                 return Err(self
@@ -187,6 +199,7 @@ impl ParquetReader {
             }
             let Some(read) = self.batches.next().transpose()? else { return Ok(None) };
             (self.batch, self.failure) = read;
+            self.warnings = self.warnings.and(self.batch.warnings);
             self.taken = 0;
         }
         let row = self.order.as_ref().map_or(self.taken, |order| order[self.taken]);

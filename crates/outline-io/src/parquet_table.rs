@@ -9,7 +9,7 @@ use parquet::file::reader::ChunkReader;
 use crate::column::Column;
 use crate::csv_columns::HeaderError;
 use crate::error::{Place, ReadError, ReadErrorKind, Span};
-use crate::parquet_batch::{BadRow, Batch, Marks, coordinates, deviations, frames, marks, names, numbers};
+use crate::parquet_batch::{BadRow, Batch, Marks, coordinates, deviations, frames, marks, names, numbers, warnings};
 use crate::parquet_columns::{Arity, Found, Layout, Needed, TableColumns};
 use crate::parquet_leaf::{Cells, Leaf};
 use crate::parquet_pages::{Allowance, CheckedPages};
@@ -156,6 +156,8 @@ struct Group {
     contour: Option<Leaf>,
     /// Where the coordinates are wanted.
     deviation: Option<Leaf>,
+    /// Where all is wanted.
+    warning: Option<Leaf>,
 }
 
 /// Rows that could be read, and what is wrong with the row behind them.
@@ -179,12 +181,16 @@ impl Batches {
         let is_wanted = |found: &&Found| self.wanted == Wanted::All || found.arity == Arity::One;
         let marks = |found: &Option<Found>| found.as_ref().filter(is_wanted).map(open).transpose();
         let (arc, contour) = (marks(&columns.arc)?, marks(&columns.contour)?);
-        let (points, deviation) = match self.wanted {
-            Wanted::Keys => (None, None),
-            Wanted::All => (Some([open(&columns.x)?, open(&columns.y)?]), optional(&columns.deviation)?),
+        let (points, deviation, warning) = match self.wanted {
+            Wanted::Keys => (None, None, None),
+            Wanted::All => (
+                Some([open(&columns.x)?, open(&columns.y)?]),
+                optional(&columns.deviation)?,
+                optional(&columns.warning)?,
+            ),
         };
         let (frame, time, object) = (optional(&columns.frame)?, optional(&columns.time)?, optional(&columns.object)?);
-        Ok(Group { left: rows, frame, time, object, points, arc, contour, deviation })
+        Ok(Group { left: rows, frame, time, object, points, arc, contour, deviation, warning })
     }
 
     fn read(&mut self) -> Result<Option<Read>, ReadError> {
@@ -263,6 +269,9 @@ impl Group {
     /// The next rows, and the first that is bad among them.
     fn read(&mut self, columns: &TableColumns, rows: usize) -> Result<(Batch, Option<BadRow>), HeaderError> {
         let (mut batch, mut bad) = (Batch::default(), Vec::new());
+        if let Some((_, cells)) = optional(&mut self.warning, &columns.warning, rows)? {
+            batch.warnings = warnings(&cells);
+        }
         let object = optional(&mut self.object, &columns.object, rows)?;
         let (names, bad_name) = names(columns.object.as_ref(), object.as_ref().map(|(_, cells)| cells), rows);
         batch.object = names;

@@ -24,7 +24,7 @@ const GROUP_POINTS: usize = 1 << 20;
 const GROUP_ROWS: usize = 1 << 16;
 
 /// Writes outlines one by one as Parquet with one row per outline: `object`, `frame`, `time`, `x` and `y`, and where the options ask for
-/// them `arc`, `contour` and `deviation`. `x` and `y` are lists of floats, `arc` and `contour` lists of whole numbers as long, or null, and
+/// them `arc`, `contour`, `deviation` and `warning`. `x` and `y` are lists of floats, `arc` and `contour` lists of whole numbers as long, or null, and
 /// `deviation` lists of floats as long, or null.
 /// [`ParquetReader`](crate::ParquetReader) reads the file back to the last bit, as it does CSV. The column `object` is always there.
 ///
@@ -107,6 +107,7 @@ impl<W: Write> ParquetWriter<W> {
         columns.extend(options.arc_column.then(|| list("arc", "OPTIONAL", "INT32")));
         columns.extend(options.contour_column.then(|| list("contour", "OPTIONAL", "INT32")));
         columns.extend(options.deviation_column.then(|| list("deviation", "OPTIONAL", "DOUBLE")));
+        columns.extend((!options.warnings.is_empty()).then(|| "REQUIRED BYTE_ARRAY warning (STRING);".to_owned()));
         let schema = parse_message_type(&format!("message outlines {{ {} }}", columns.join(" "))).map_err(failed)?;
         let comments = KeyValue::new(COMMENTS.to_owned(), comments.join("\n"));
         let properties = WriterProperties::builder()
@@ -197,6 +198,10 @@ impl<W: Write> ParquetWriter<W> {
         if self.options.deviation_column {
             let OptionalLists { values, definition, repetition } = &rows.deviation;
             column::<DoubleType>(&mut group, values, Some((definition, repetition)))?;
+        }
+        if !self.options.warnings.is_empty() {
+            let warnings = ByteArray::from(self.options.warnings.to_string().as_str());
+            column::<ByteArrayType>(&mut group, &vec![warnings; rows.frame.len()], None)?;
         }
         group.close().map_err(failed)?;
         self.pass_on()

@@ -11,6 +11,7 @@ use image::{DynamicImage, GrayImage, ImageDecoder, ImageError, ImageFormat, Imag
 
 use crate::channel::Channel;
 use crate::compressed_video::compressed_video;
+use crate::foreign_format::is_heic;
 use crate::jpeg_end::reaches_its_end;
 use crate::picture_error::{PictureError, PictureErrorKind};
 use crate::tiff_pages::has_several_pages;
@@ -83,9 +84,14 @@ fn read_file<T>(
 
 /// Several channels of a picture that is decoded once, in their order.
 pub(crate) fn read_picture_channels(path: &Path, channels: &[Channel]) -> Result<Vec<Arc<GrayImage>>, PictureError> {
+    Ok(Channel::all_of(read_picture_colours(path)?, channels))
+}
+
+/// A picture with its colours, as it is to be seen.
+pub(crate) fn read_picture_colours(path: &Path) -> Result<DynamicImage, PictureError> {
     let (mut picture, orientation) = read_file(path, decode_colours)?;
     picture.apply_orientation(orientation);
-    Ok(Channel::all_of(picture, channels))
+    Ok(picture)
 }
 
 /// A picture as it is to be seen.
@@ -103,6 +109,9 @@ fn decode_colours(source: &mut dyn Source) -> Result<(DynamicImage, Orientation)
     }
     if let Some(format) = compressed_video(start) {
         return Err(PictureErrorKind::CompressedVideo { format });
+    }
+    if is_heic(start) {
+        return Err(PictureErrorKind::Unsupported { format: "image/heic" });
     }
     let limits = limits(start);
     let reader = ImageReader::new(source).with_guessed_format()?;

@@ -55,11 +55,26 @@ pub enum PictureErrorKind {
     #[error("not a picture")]
     NotAPicture,
     /// A picture format that is not built in; three are with the feature `all-pictures` alone.
-    #[error("pictures of type {format} are not supported")]
+    #[error(
+        "pictures of type {format} are not supported: convert them to PNG, such as with ImageMagick: mogrify -format png FILES"
+    )]
     Unsupported {
         /// Its media type.
         format: &'static str,
     },
+    /// A file of another kind.
+    #[error("{format}: {advice}")]
+    ForeignFormat {
+        /// What it is.
+        format: &'static str,
+        /// What to do.
+        advice: &'static str,
+    },
+    /// Colours that are none of labels.
+    #[error(
+        "no label mask: its colours are neither grey nor those of a palette of labels, or parts of it are transparent"
+    )]
+    NotLabels,
     /// Video that has to be decoded first.
     #[error("{format} video is not decoded here, only uncompressed video (y4m) is")]
     CompressedVideo {

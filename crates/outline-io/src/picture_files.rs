@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::compressed_video::compressed_video;
 use crate::file_pattern::{is_pattern, matching_files};
+use crate::foreign_format::{foreign_format, is_heic};
 use crate::natural_order::natural_order;
 use crate::picture_error::{PictureError, PictureErrorKind};
 
@@ -12,7 +13,8 @@ use crate::picture_error::{PictureError, PictureErrorKind};
 pub(crate) const MAGIC_LENGTH: usize = 16;
 
 /// Extensions of the files that a folder is searched for.
-const EXTENSIONS: [&str; 10] = ["png", "jpg", "jpeg", "tif", "tiff", "bmp", "gif", "y4m", "jpe", "webp"];
+const EXTENSIONS: [&str; 14] =
+    ["png", "jpg", "jpeg", "tif", "tiff", "bmp", "gif", "y4m", "jpe", "webp", "pgm", "ppm", "pbm", "pnm"];
 
 /// The files that a path stands for: those of the pictures in a folder or that match a pattern, in natural order, or the path.
 /// Those found may be links that lead nowhere, pipes, or folders with the name of a picture: without them the times of the others
@@ -63,11 +65,17 @@ pub(crate) fn beginning(path: &Path) -> io::Result<Vec<u8>> {
 /// Why there are no pictures among files: video that is not decoded, or none at all.
 fn nothing_to_read(path: &Path, mut files: Vec<PathBuf>) -> PictureError {
     files.sort_by(|a, b| natural_order(&a.to_string_lossy(), &b.to_string_lossy()));
-    let format = |file: &PathBuf| compressed_video(&beginning(file).unwrap_or_default());
-    match files.iter().find_map(|file| Some((file, format(file)?))) {
-        Some((file, format)) => {
-            PictureError::of_file(file.display().to_string(), PictureErrorKind::CompressedVideo { format })
-        }
+    let kind = |file: &PathBuf| {
+        let start = beginning(file).unwrap_or_default();
+        let format = match foreign_format(&start, &file.to_string_lossy()) {
+            Some((format, advice)) => return Some(PictureErrorKind::ForeignFormat { format, advice }),
+            None if is_heic(&start) => return Some(PictureErrorKind::Unsupported { format: "image/heic" }),
+            None => compressed_video(&start),
+        };
+        format.map(|format| PictureErrorKind::CompressedVideo { format })
+    };
+    match files.iter().find_map(|file| Some((file, kind(file)?))) {
+        Some((file, kind)) => PictureError::of_file(file.display().to_string(), kind),
         None => PictureError::of_file(path.display().to_string(), PictureErrorKind::NoPictures),
     }
 }

@@ -8,14 +8,18 @@ use crate::{
     background::Background,
     channel::Channel,
     choice::{PictureSample, SamplePlan, TracingChoice, choose_tracing},
+    flat_bodies::level_of_missed,
     ground_picture::ground_picture,
     identity::Selection,
-    picture::read_picture_channels,
+    label_evidence::LabelEvidence,
+    label_pictures::LabelPicture,
+    picture::{read_picture_channel, read_picture_channels},
     picture_error::PictureError,
     picture_files::picture_files,
     picture_outlines::{PictureOutlines, PictureSettings, TracedFrame},
     picture_sequence::{PictureFrame, PictureSequence, SequenceSettings},
     trace::is_two_valued,
+    trace_settings::TraceSettings,
     whole_pixels,
 };
 
@@ -28,6 +32,12 @@ const EDGES_LOOKED_AT: usize = 6;
 /// Pictures whose edges and steps tell whether they are drawn on whole pixels: a speed that is off a whole number of pixels by a tenth shows a step
 /// of another pixel in one picture of ten.
 const STEPS_LOOKED_AT: usize = 12;
+
+/// Pictures that tell whether they are label masks.
+const LABELS_LOOKED_AT: usize = 12;
+
+/// Pictures that tell whether bodies of other grey values are left out.
+const FLAT_LOOKED_AT: usize = 4;
 
 /// Most pixels of these pictures, all together: those of one of the largest.
 const EDGE_PIXELS: usize = 1 << 26;
@@ -155,6 +165,45 @@ impl PicturePreview {
             return None;
         }
         Some(choose_tracing(&sample, base, &[])).filter(|choice| choice.best().is_some())
+    }
+
+    /// The files, where each holds one picture.
+    #[must_use]
+    pub fn single_files(&self) -> Option<&[PathBuf]> {
+        match self {
+            Self::Pictures(files) => Some(files),
+            Self::Files(_) | Self::Beginning(_) => None,
+        }
+    }
+
+    /// What speaks for it that the pictures are label masks, by some of them; `None` where they are none.
+    #[must_use]
+    pub fn label_evidence(&self) -> Option<LabelEvidence> {
+        LabelEvidence::of(self.some_files(LABELS_LOOKED_AT)?.map(|path| LabelPicture::read(path).ok()))
+    }
+
+    /// Difference from the ground, in grey values, by which the bodies of drawn pictures are told from it where these settings, which compare with no
+    /// background, leave some of them out in most pictures; `None` where they do not, or the pictures are no drawings.
+    #[must_use]
+    pub fn level_of_missed(&self, trace: &TraceSettings, channel: Channel) -> Option<f64> {
+        let mut levels = Vec::new();
+        let mut pictures = 0;
+        for path in self.some_files(FLAT_LOOKED_AT)? {
+            pictures += 1;
+            levels
+                .extend(read_picture_channel(path, channel).ok().and_then(|picture| level_of_missed(&picture, trace)));
+            if 2 * levels.len() < pictures {
+                return None;
+            }
+        }
+        levels.into_iter().min_by(f64::total_cmp)
+    }
+
+    /// Some files of single pictures, spread over all of them.
+    fn some_files(&self, count: usize) -> Option<impl Iterator<Item = &PathBuf>> {
+        let files = self.single_files()?;
+        let step = files.len().div_ceil(count).max(1);
+        Some(files.iter().step_by(step).filter(|path| path.is_file()))
     }
 
     /// How far outlines that are traced with these settings may lie off, by some of the pictures; `None` where nothing tells.

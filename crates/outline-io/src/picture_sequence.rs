@@ -8,6 +8,7 @@ use image::{GrayImage, ImageFormat};
 use crate::channel::Channel;
 use crate::compressed_video::compressed_video;
 use crate::file_pattern::is_pattern;
+use crate::foreign_format::is_heic;
 use crate::gif_animation::GifAnimation;
 use crate::picture::{decode, read_picture_channel};
 use crate::picture_error::{PictureError, PictureErrorKind};
@@ -175,7 +176,10 @@ impl PictureSequence {
     #[must_use]
     pub fn begins_with(start: &[u8]) -> bool {
         let start = &start[..start.len().min(MAGIC_LENGTH)];
-        start.starts_with(MAGIC) || image::guess_format(start).is_ok() || compressed_video(start).is_some()
+        start.starts_with(MAGIC)
+            || image::guess_format(start).is_ok()
+            || is_heic(start)
+            || compressed_video(start).is_some()
     }
 
     /// Number of frames, where it is known before they are read.

@@ -1,5 +1,5 @@
 use freeform_motion::estimate::{MotionEstimate, MotionState, ParameterEstimate, PointVelocity, ProcessNoise};
-use freeform_motion::significant;
+use freeform_motion::{VelocityUnit, significant};
 use nalgebra::DMatrix;
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyKeyError;
@@ -8,6 +8,7 @@ use pyo3::types::PyTuple;
 use serde::{Deserialize, Serialize};
 
 use crate::arrays::{array_of_matrix, array_of_matrix3, array2, point};
+use crate::errors::value_error;
 use crate::pickled::{Pickled, Reduced};
 
 /// One parameter of a motion.
@@ -27,10 +28,10 @@ impl PyParameter {
         self.inner.name
     }
 
-    /// Unit: `rad/s` or `1/s` (lengths of the image per second for b1 and b2).
+    /// Unit: `rad/s`, `1/s`, or `px/s` for b of masks whose pixels have the size 1; in other units of length `1/s` is lengths per second.
     #[getter]
     fn unit(&self) -> &'static str {
-        self.inner.unit
+        self.of.unit_of(&self.inner)
     }
 
     /// The value; None where the outlines tell nothing of it.
@@ -62,12 +63,12 @@ impl PyParameter {
     }
 
     fn __repr__(&self) -> String {
-        text(&self.inner)
+        text(&self.inner, self.unit())
     }
 }
 
-fn text(parameter: &ParameterEstimate) -> String {
-    let ParameterEstimate { name, unit, value, standard_deviation, .. } = parameter;
+fn text(parameter: &ParameterEstimate, unit: &str) -> String {
+    let ParameterEstimate { name, value, standard_deviation, .. } = parameter;
     match (value, standard_deviation) {
         (None, _) => format!("{name} not observable"),
         (Some(value), None) => format!("{name} = {} {unit}", significant(*value, 6)),
@@ -83,15 +84,47 @@ fn text(parameter: &ParameterEstimate) -> String {
 pub(crate) struct PyEstimate {
     inner: MotionEstimate,
     covariance: Option<DMatrix<f64>>,
+    /// Saved behind the others, since estimates that were saved before have none.
+    #[serde(skip)]
+    velocity_unit: VelocityUnit,
 }
 
 impl Pickled for PyEstimate {
     const KIND: ([u8; 4], &'static str) = (*b"esti", "Estimate");
+
+    fn to_bytes(&self) -> PyResult<Vec<u8>> {
+        Self::format().encoded(&(self, self.velocity_unit)).map_err(value_error)
+    }
+
+    fn of_bytes(bytes: &[u8]) -> PyResult<Self> {
+        let format = Self::format();
+        match format.decoded::<(Self, VelocityUnit)>(bytes) {
+            Ok((estimate, velocity_unit)) => Ok(estimate.with_velocities_in(velocity_unit)),
+            Err(_) => format.decoded(bytes).map_err(value_error),
+        }
+    }
 }
 
 impl PyEstimate {
     pub(crate) fn new(inner: MotionEstimate, covariance: Option<DMatrix<f64>>) -> Self {
-        Self { inner, covariance }
+        Self { inner, covariance, velocity_unit: VelocityUnit::default() }
+    }
+
+    /// The same with velocities in a unit that has a name.
+    pub(crate) fn with_velocities_in(self, velocity_unit: VelocityUnit) -> Self {
+        Self { velocity_unit, ..self }
+    }
+
+    /// The unit of its velocities.
+    pub(crate) fn velocity_unit(&self) -> VelocityUnit {
+        self.velocity_unit
+    }
+
+    fn unit_of(&self, parameter: &ParameterEstimate) -> &'static str {
+        let model = self.inner.model();
+        let position = model.parameter_names().iter().position(|name| *name == parameter.name);
+        let kind = position.map(|position| model.parameter_kinds()[position]);
+        kind.map_or(parameter.unit, |kind| self.velocity_unit.of_parameter(kind, parameter.unit))
     }
 
     /// Whether a parameter of this name has a value.
@@ -101,7 +134,7 @@ impl PyEstimate {
 
     /// Its parameters in one line.
     pub(crate) fn text(&self) -> String {
-        self.inner.parameters().map(|p| text(&p)).collect::<Vec<_>>().join(", ")
+        self.inner.parameters().map(|p| text(&p, self.unit_of(&p))).collect::<Vec<_>>().join(", ")
     }
 }
 
@@ -127,7 +160,7 @@ impl PyEstimate {
     /// Units of the parameters, a tuple of k.
     #[getter]
     fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        PyTuple::new(py, self.inner.model().units())
+        PyTuple::new(py, self.inner.parameters().map(|parameter| self.unit_of(&parameter)).collect::<Vec<_>>())
     }
 
     /// Values in the order of the names, shape (k,); NaN where a parameter is not observable.

@@ -1,5 +1,6 @@
 use std::sync::{Mutex, PoisonError};
 
+use freeform_motion::VelocityUnit;
 use freeform_motion::outline_io::{
     Clipping, Identities, LabelMask, Selection, Smoothing, TraceError, TraceSettings, TracedLabel, TracedOutline,
 };
@@ -102,6 +103,11 @@ impl PyLabelTracer {
 }
 
 impl PyLabelTracer {
+    /// The unit of velocities of what it traces.
+    pub(crate) fn velocity_unit(&self, is_scaled: bool) -> VelocityUnit {
+        VelocityUnit::in_pictures(self.settings.pixel_size, self.settings.pixel_aspect, is_scaled)
+    }
+
     fn objects(&self, frame: u64, mask: LabelMask<'_>) -> Result<Traced, TraceError> {
         let mut found = Vec::new();
         let mut refused = Vec::new();

@@ -63,9 +63,9 @@ mod _native {
     #[pymodule_export]
     use crate::recording::{PyRecorder, identify_table, outlines_of_table, track_table};
     #[pymodule_export]
-    use crate::result_warning::PyResultWarning;
+    use crate::result_warning::{PyResultWarning, origin_warnings};
     #[pymodule_export]
     use crate::simulation::{PySimulatedFrame, PySimulation, simulate};
     #[pymodule_export]
-    use crate::tracker::PyTracker;
+    use crate::tracker::{PyTracker, results_of};
 }

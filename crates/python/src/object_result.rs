@@ -1,3 +1,4 @@
+use freeform_motion::VelocityUnit;
 use freeform_motion::outline_filter::DynamicsWeights;
 use freeform_motion::tracker::{NotStated, ObjectResult};
 use numpy::PyArray1;
@@ -89,15 +90,32 @@ impl From<ObjectResult> for PyObjectResult {
     }
 }
 
+impl PyObjectResult {
+    /// The same with velocities in a unit that has a name.
+    pub(crate) fn with_velocities_in(self, unit: VelocityUnit) -> Self {
+        Self { estimate: self.estimate.map(|estimate| estimate.with_velocities_in(unit)), ..self }
+    }
+
+    /// The same with more to be known of it, behind all other warnings.
+    pub(crate) fn with_warnings(mut self, warnings: &[PyResultWarning]) -> Self {
+        self.warnings.extend(warnings.iter().cloned());
+        self
+    }
+}
+
 impl Pickled for PyObjectResult {
     const KIND: ([u8; 4], &'static str) = (*b"obje", "ObjectResult");
 
     fn to_bytes(&self) -> PyResult<Vec<u8>> {
-        Self::format().encoded(&(self, &self.reasons)).map_err(value_error)
+        let unit = self.estimate.as_ref().map(PyEstimate::velocity_unit).unwrap_or_default();
+        Self::format().encoded(&(self, &self.reasons, unit)).map_err(value_error)
     }
 
     fn of_bytes(bytes: &[u8]) -> PyResult<Self> {
         let format = Self::format();
+        if let Ok((result, reasons, unit)) = format.decoded::<(Self, Reasons, VelocityUnit)>(bytes) {
+            return Ok(Self { reasons, ..result }.with_velocities_in(unit));
+        }
         match format.decoded(bytes) {
             Ok((result, reasons)) => Ok(Self { reasons, ..result }),
             Err(_) => format.decoded(bytes).map_err(value_error),

@@ -1,4 +1,5 @@
 use freeform_motion::Warning;
+use freeform_motion::outline_io::{OriginWarning, OriginWarnings};
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -18,6 +19,19 @@ impl From<&Warning> for PyResultWarning {
     fn from(warning: &Warning) -> Self {
         Self { code: warning.code().to_owned(), message: warning.to_string() }
     }
+}
+
+impl From<OriginWarning> for PyResultWarning {
+    fn from(warning: OriginWarning) -> Self {
+        Self { code: warning.code().to_owned(), message: warning.to_string() }
+    }
+}
+
+/// What texts of the column `warning` of a table say of how its outlines were found.
+#[pyfunction]
+#[expect(clippy::needless_pass_by_value, reason = "an argument from Python")]
+pub(crate) fn origin_warnings(texts: Vec<String>) -> Vec<PyResultWarning> {
+    OriginWarnings::of_text(&texts.join(" ")).iter().map(Into::into).collect()
 }
 
 impl PyResultWarning {

@@ -3,17 +3,19 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::riccati::CameraScale;
 use freeform_motion::tracker::MethodSettings;
-use freeform_motion::{Tracker, TrackerSettings};
+use freeform_motion::{Tracker, TrackerSettings, VelocityUnit};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::errors::{value_error, whole};
+use crate::label_tracer::PyLabelTracer;
 use crate::motion_filter::FilterArguments;
 use crate::names::{camera_scale, method, motion_model, object_name};
 use crate::object_result::PyObjectResult;
 use crate::observation::PyObservation;
 use crate::outline::outline_of;
 use crate::plane::rectification;
+use crate::result_warning::PyResultWarning;
 
 /// Identifies the motion of many objects from their outlines. Memory does not grow with the number of frames.
 ///
@@ -34,6 +36,26 @@ use crate::plane::rectification;
 #[derive(Debug)]
 pub(crate) struct PyTracker {
     inner: Mutex<Tracker>,
+}
+
+/// The results of a tracker: of what was traced in masks in the unit of these, and with what is to be known of where all outlines come from.
+#[pyfunction]
+#[pyo3(signature = (tracker, tracer = None, origin = Vec::new()))]
+#[expect(clippy::needless_pass_by_value, reason = "arguments from Python")]
+pub(crate) fn results_of(
+    tracker: &PyTracker,
+    tracer: Option<PyRef<'_, PyLabelTracer>>,
+    origin: Vec<PyRef<'_, PyResultWarning>>,
+) -> Vec<PyObjectResult> {
+    let tracker = tracker.lock();
+    let settings = tracker.settings();
+    let unit = match tracer.filter(|_| settings.rectification.is_none()) {
+        Some(tracer) => tracer.velocity_unit(settings.scale.is_some()),
+        None => VelocityUnit::default(),
+    };
+    let origin: Vec<PyResultWarning> = origin.iter().map(|warning| (**warning).clone()).collect();
+    let results = tracker.results().into_iter().map(PyObjectResult::from);
+    results.map(|result| result.with_velocities_in(unit).with_warnings(&origin)).collect()
 }
 
 impl PyTracker {

@@ -115,17 +115,18 @@ def test_a_result_says_why_a_value_is_not_stated_also_after_it_was_pickled():
     assert again(adaptive).velocity_not_stated == "unknown"
 
 
-def test_results_that_were_pickled_before_they_had_reasons_are_read(bird):
+def test_results_that_were_pickled_before_they_had_reasons_or_units_are_read(bird):
     result = ff.identify(bird)[0]
     restore, (data,) = result.__reduce__()
-    # No parameter without a value, and a velocity: an empty list and none.
-    assert data[-2:] == b"\0\0"
-    state, checksum = data[16:-2], 0xCBF29CE484222325
-    for byte in state:
-        checksum = (checksum ^ byte) * 0x100000001B3 % 2**64
-    before = restore(data[:8] + checksum.to_bytes(8, "little") + state)
-    assert repr(before) == repr(result) and before.not_stated("omega") is None
-    assert before.not_stated("nothing of this name") == "unknown"
+    # No parameter without a value, and a velocity: an empty list and none; then the unit of velocities.
+    assert data[-3:] == b"\0\0\2"
+    for end in (-1, -3):
+        state, checksum = data[16:end], 0xCBF29CE484222325
+        for byte in state:
+            checksum = (checksum ^ byte) * 0x100000001B3 % 2**64
+        before = restore(data[:8] + checksum.to_bytes(8, "little") + state)
+        assert repr(before) == repr(result) and before.not_stated("omega") is None
+        assert before.not_stated("nothing of this name") == "unknown" and before.estimate.units == result.estimate.units
 
 
 def test_arrays_of_points_are_outlines_as_for_the_motion_filter(bird):
@@ -153,3 +154,21 @@ def test_arrays_of_points_are_outlines_as_for_the_motion_filter(bird):
 def test_lists_of_outlines_are_looked_at(bird, call, error, words):
     with pytest.raises(error, match=words):
         call([frame.outline for frame in bird])
+
+
+def test_velocities_of_masks_are_in_pixels_and_those_of_other_data_in_lengths_that_have_no_name(table):
+    masks = ff.simulate("glider", omega=1.0, seconds=0.5).masks()
+    units = {
+        "pixels": ff.identify(masks, fps=30),
+        "pixel heights": ff.identify(masks, fps=30, pixel_aspect=1.1),
+        "a length": ff.identify(masks, fps=30, pixel_size=0.25),
+        "scaled": ff.identify(masks, fps=30, scale=0.1),
+        "table": ff.identify(table),
+    }
+    found = {name: results[0].estimate.units[1:] for name, results in units.items()}
+    expected = {"pixels": "px/s", "pixel heights": "pixel heights/s", "a length": "1/s", "scaled": "1/s", "table": "1/s"}
+    assert found == {name: (unit, unit) for name, unit in expected.items()}
+    estimate = units["pixels"][0].estimate
+    assert estimate.units[0] == "rad/s" and estimate["b1"].unit == "px/s" and "px/s" in repr(estimate)
+    assert again(estimate).units == estimate.units == again(units["pixels"][0]).estimate.units
+    assert again(estimate["b1"]).unit == "px/s"

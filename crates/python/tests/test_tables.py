@@ -377,3 +377,23 @@ def test_progress_counts_every_frame(table, monkeypatch):
     assert sum(counted) == 30
     ff.identify(table, progress=False)
     assert sum(counted) == 30
+
+
+@pytest.mark.parametrize("library", LIBRARIES.values(), ids=LIBRARIES)
+def test_what_a_table_says_of_how_its_outlines_were_found_is_warned_of_and_in_the_results(table, library):
+    told = np.full(len(table["frame"]), "tracing_doubtful rate_assumed")
+    for use in (ff.identify, ff.track):
+        with pytest.warns(UserWarning) as heard:
+            results = use(library({**table, "warning": told}))
+        messages = [str(warning.message) for warning in heard]
+        assert ["tracing_doubtful" in messages[0], "rate_assumed" in messages[1], len(messages)] == [True, True, 2]
+        assert all(warning.filename == __file__ for warning in heard)
+        if use is ff.identify:
+            codes = [[warning.code for warning in result.warnings] for result in results]
+            assert all(of_object[-2:] == ["tracing_doubtful", "rate_assumed"] for of_object in codes)
+
+
+def test_a_column_warning_of_another_program_says_nothing(table):
+    count = len(table["frame"])
+    for values in (np.zeros(count), np.arange(count), np.full(count, "low battery"), np.full(count, None)):
+        assert ff.identify({**table, "warning": values})[0].warnings == ff.identify(table)[0].warnings == []

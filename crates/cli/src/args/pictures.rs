@@ -11,7 +11,7 @@ const SMALLEST_OBJECT: u64 = 64;
 /// The paragraph on pictures in the help of a command.
 pub(crate) fn picture_inputs(command: &str) -> String {
     format!(
-        "Pictures: PNG, JPEG, TIFF, BMP, WebP, animated GIF, uncompressed video (y4m), a folder of pictures or a quoted \
+        "Pictures: PNG, JPEG, TIFF, BMP, WebP, PGM and PPM, animated GIF, uncompressed video (y4m), a folder of pictures or a quoted \
          pattern, in natural order (frame-9 before frame-10). Convert any other video through a pipe:\n  {}\nA picture that cannot be \
          read, differs in size from the first, or shows no object is left out with a warning.\n\nWithout --light, --dark, --threshold, \
          --background or --ring, the ways are tried on pictures of the sequence, and the one that tells an object from the ground best \
@@ -150,7 +150,7 @@ impl PictureOptions {
 
     /// Whether several objects may be taken.
     pub(crate) fn follows_all(&self) -> bool {
-        matches!(self.objects(), ObjectsChoice::All | ObjectsChoice::Moving)
+        matches!(self.objects(), ObjectsChoice::All | ObjectsChoice::Moving | ObjectsChoice::Labels)
     }
 
     /// Which objects are taken.
@@ -170,6 +170,11 @@ impl PictureOptions {
 
     /// Whether the options say how objects are told from the ground.
     pub(crate) fn has_way(&self) -> bool {
+        self.objects == Some(ObjectsChoice::Labels) || self.has_grey_way()
+    }
+
+    /// Whether they say which grey values are those of objects.
+    fn has_grey_way(&self) -> bool {
         self.dark || self.light || self.threshold.is_some() || self.background.is_some() || self.ring.is_some()
     }
 
@@ -184,6 +189,24 @@ impl PictureOptions {
         self.background.as_ref().is_some_and(|path| path.as_os_str() == "whole")
     }
 
+    /// Names of the options that say something else than that labels are objects.
+    pub(crate) fn not_for_labels(&self) -> Vec<&'static str> {
+        let for_greys = [
+            "--dark",
+            "--light",
+            "--threshold",
+            "--channel",
+            "--background",
+            "--background-window",
+            "--ring",
+            "--ring-width",
+            "--contours",
+            "--candidates",
+            "--margins",
+        ];
+        self.given().into_iter().filter(|option| for_greys.contains(option)).collect()
+    }
+
     /// Names and values of the options, for a report.
     pub(crate) fn listed(&self) -> Vec<(&'static str, String)> {
         let found = match (self.ring, &self.background, self.threshold) {
@@ -194,6 +217,7 @@ impl PictureOptions {
             }
             (_, Some(background), _) => format!("against the background {}", background.display()),
             (_, _, Some(threshold)) => format!("by the grey value {threshold}"),
+            _ if self.objects() == ObjectsChoice::Labels => "by their labels".to_owned(),
             _ => "by Otsu's threshold in each picture".to_owned(),
         };
         let name = |value: Option<clap::builder::PossibleValue>| {
@@ -288,6 +312,8 @@ pub(crate) enum ObjectsChoice {
     Nearest,
     /// All objects; each keeps its number from picture to picture
     All,
+    /// Every value of label masks but 0, each by its number; the default for masks of several values
+    Labels,
     /// Those of all that move: each from where it has left its place; what comes and goes is hardly ever taken
     Moving,
 }
@@ -297,7 +323,7 @@ impl ObjectsChoice {
         match self {
             Self::Largest => Selection::Largest,
             Self::Nearest => Selection::Nearest,
-            Self::All => Selection::All,
+            Self::All | Self::Labels => Selection::All,
             Self::Moving => Selection::Moving,
         }
     }

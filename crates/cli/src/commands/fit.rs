@@ -67,12 +67,13 @@ struct Fitted {
 }
 
 /// Fits the outlines of an input, as many side by side as need not be waited for, and prints the fits.
-fn fit_all(args: &FitArgs, input: Input, fitter: Fitter, sink: &mut Sink) -> Result<Fitted, Failure> {
+fn fit_all(args: &FitArgs, mut input: Input, fitter: Fitter, sink: &mut Sink) -> Result<Fitted, Failure> {
     let progress = Progress::of_frames(input.frame_count(), sink.is_disturbed_by_progress());
     let is_wanted = |frame: u64| args.frame.is_none_or(|wanted| wanted == frame);
     let mut waiting = Batch { input: input.name.clone(), fitter, items: SideBySide::of(&input) };
     let mut fitted = Fitted::default();
-    for item in input {
+    while let Some(item) = input.next() {
+        input.news().iter().for_each(|told| progress.pause(|| warn(told)));
         progress.advance();
         match item {
             Ok(Item::Outline(frame, _)) => {

@@ -2,7 +2,6 @@ use std::io::Write as _;
 
 use freeform_drawing::{Findings, MeaningOfB, OBJECTS_PLAYED, Report, write_report};
 use freeform_motion::outline_io::OutlineUncertainty;
-use freeform_motion::riccati::ParameterKind;
 use freeform_motion::tracker::{NotStated, ObjectResult, write_results};
 use freeform_motion::{Tracker, Truth, Warning};
 
@@ -72,7 +71,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
 
     let outcome = Outcome::new(args, &input, &tracker, truth, left_out, failure);
     if !args.quiet && !input.has_pictures() {
-        hints.told().iter().for_each(|hint| warn(hint));
+        hints.told(outcome.failure.is_none() && outcome.lacks_values()).iter().for_each(|hint| warn(hint));
     }
     outcome.warn_of_objects_not_drawn(&files);
     let report = files.report.take().filter(|_| outcome.is_anything_read());
@@ -157,7 +156,7 @@ impl<'a> Outcome<'a> {
         left_out: LeftOut,
         failure: Option<Failure>,
     ) -> Self {
-        let in_doubt = input.pictures().is_some_and(PictureInput::may_mistake_one_for_another);
+        let in_doubt = input.may_mistake_one_for_another();
         let doubted = |result: ObjectResult| if in_doubt { result.of_doubtful_outlines() } else { result };
         let results: Vec<ObjectResult> = tracker.results().into_iter().map(doubted).collect();
         let is_found = results.iter().any(|result| result.parameters().is_some());
@@ -180,6 +179,7 @@ impl<'a> Outcome<'a> {
         let Self { args, input, results, is_found, .. } = self;
         let mut listed = settings(&args.options, &input.name);
         listed.extend(input.pictures().map(PictureInput::listed).unwrap_or_default());
+        listed.extend(input.origin_warnings().into_iter().map(|(_, warning)| ("Warning", warning)));
         listed.push(version());
         let reason = self.failure.as_ref().map(Failure::text);
         let all_poses = format!("--trajectory writes those of all {}.", results.len());
@@ -218,12 +218,16 @@ impl<'a> Outcome<'a> {
                 table.and_then(|()| if is_pointed_to { writeln!(sink, "{POSES_OVER_TIME}") } else { Ok(()) })
             }
             IdentifyFormat::Json => {
-                let warnings = self.input.pictures().map(PictureInput::tracing_warnings).unwrap_or_default();
-                write_identify_json(&mut sink, results, b, &self.left_out, &warnings)
+                write_identify_json(&mut sink, results, b, &self.left_out, &self.input.origin_warnings())
             }
-            IdentifyFormat::Csv => write_results(&mut sink, results, b.unit_in_data(ParameterKind::Velocity, "1/s")),
+            IdentifyFormat::Csv => write_results(&mut sink, results, b.short_unit),
         };
         written.and_then(|()| sink.flush()).map_err(|error| sink.failure(&error))
+    }
+
+    /// Whether a parameter of any object is not stated, for whatever reason.
+    fn lacks_values(&self) -> bool {
+        self.results.iter().any(|result| !result.unstated().is_empty())
     }
 
     /// Whether a parameter of any object is not known at the end that may have been known before.

@@ -1,7 +1,9 @@
 use std::path::Path;
 
 use freeform_drawing::{Drawn, Overlay};
-use freeform_motion::outline_io::{OutlineFrame, SourcePicture, TableFormat, TableWriter, WriteError, WriterOptions};
+use freeform_motion::outline_io::{
+    OriginWarnings, OutlineFrame, SourcePicture, TableFormat, TableWriter, WriteError, WriterOptions,
+};
 
 use super::simulate::SequenceError;
 use crate::args::OutlineArgs;
@@ -56,9 +58,13 @@ fn trace_all(args: &OutlineArgs, mut input: Input, sink: &mut Sink) -> Result<Tr
     let progress = Progress::of_frames(input.frame_count(), args.quiet || sink.is_disturbed_by_progress());
     let single = input.frame_count() == Some(1);
     let mut table = Table::new(args, &mut input, sink);
+    let mut is_begun = false;
     let mut first_missing = None;
     let mut warnings = MissingWarnings::default();
-    for item in input.by_ref() {
+    while let Some(item) = input.next() {
+        if !args.quiet {
+            input.news().iter().for_each(|told| progress.pause(|| warn(told)));
+        }
         // What came after Ctrl-C may be cut short.
         if interrupt::was_asked_for() {
             break;
@@ -66,6 +72,10 @@ fn trace_all(args: &OutlineArgs, mut input: Input, sink: &mut Sink) -> Result<Tr
         progress.advance();
         match item? {
             Item::Outline(frame, source) => {
+                if !std::mem::replace(&mut is_begun, true) {
+                    // A table that is copied says it in its rows.
+                    table.options.warnings = input.origin_warnings().into_iter().map(|(warning, _)| warning).collect();
+                }
                 table.write(&frame)?;
                 if let (Some(drawings), Some(source)) = (&mut drawings, &source) {
                     drawings.draw(source, &frame)?;
@@ -112,6 +122,7 @@ impl<'a> Table<'a> {
             // A copy of a table says no less than the table.
             deviation_column: args.deviations || input.has_deviation_column(),
             resolution: None,
+            warnings: OriginWarnings::NONE,
         };
         let (format, comments) = (TableFormat::of(&args.output), std::mem::take(&mut input.comments));
         Self { sink: Some(sink), writer: None, format, options, comments, outlines: 0 }

@@ -56,11 +56,12 @@ struct Compared {
 }
 
 /// Compares the outlines of an input with the known ones, as many side by side as need not be waited for.
-fn compare_all(input: Input, recogniser: &Recogniser, sink: &Sink) -> Compared {
+fn compare_all(mut input: Input, recogniser: &Recogniser, sink: &Sink) -> Compared {
     let progress = Progress::of_frames(input.frame_count(), sink.is_disturbed_by_progress());
     let mut waiting = SideBySide::of(&input);
     let mut compared = Compared::default();
-    for item in input {
+    while let Some(item) = input.next() {
+        input.news().iter().for_each(|told| progress.pause(|| warn(told)));
         progress.advance();
         match item {
             Ok(Item::Outline(frame, _)) => {

@@ -54,11 +54,12 @@ fn of_outline(args: &RectifyArgs, known: &Path) -> Result<(Projective2<f64>, Str
     refuse_overwriting(&read, &candidates)?;
     refuse_standard_output(&candidates)?;
     let known = read_shape(known).map_err(Failure::unusable)?;
-    let input = Input::open(&args.seen, &args.pictures, Waiting::Allowed, Verbosity::Usual)?;
+    let mut input = Input::open(&args.seen, &args.pictures, Waiting::Allowed, Verbosity::Usual)?;
     let name = input.name.clone();
     input.tell_tracing();
     let (mut seen, mut object, mut warnings) = (Vec::<Outline>::new(), None::<String>, MissingWarnings::default());
-    for item in input {
+    while let Some(item) = input.next() {
+        input.news().iter().for_each(|told| warn(told));
         match item? {
             Item::Outline(frame, _) => {
                 let first = object.get_or_insert_with(|| frame.object.clone());

@@ -32,7 +32,7 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     let mut overlay = InputOverlay::open(args.drawings.overlay.as_deref(), &args.inputs, &input, &args.options)?;
     interrupt::listen();
     let name = input.name.clone();
-    let in_doubt = input.pictures().is_some_and(PictureInput::may_mistake_one_for_another) && !args.quiet;
+    let in_doubt = input.may_mistake_one_for_another() && !args.quiet;
     let stated = (following.settings().method(), following.settings().motion());
     let b = input.meaning_of_b(&args.options);
     let mut sink = Sink::stdout();
@@ -59,7 +59,8 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
         first_reason = first_reason.take().or_else(|| observation.rejection.clone());
         write_line(&mut sink, &track_line(observation, stated, &b).map_err(Failure::unusable)?)
     })?;
-    if in_doubt {
+    // A table says it in its rows.
+    if in_doubt || input.may_mistake_one_for_another() && !args.quiet {
         following.results().into_iter().for_each(warn_of_two_frames);
     }
     if let Some(overlay) = overlay {

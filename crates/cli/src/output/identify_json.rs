@@ -4,7 +4,7 @@ use freeform_drawing::MeaningOfB;
 use freeform_motion::Warning;
 use freeform_motion::estimate::{MotionEstimate, ParameterEstimate};
 use freeform_motion::outline_filter::{Ambiguity, DynamicsWeights, PlaneAmbiguity};
-use freeform_motion::outline_io::TracingWarning;
+use freeform_motion::outline_io::OriginWarning;
 use freeform_motion::riccati::CameraScale;
 use freeform_motion::tracker::{Method, MotionFamily, NotStated, ObjectPhase, ObjectResult, Observation};
 use serde::ser::{Serialize, SerializeMap, SerializeStruct, Serializer};
@@ -20,7 +20,7 @@ pub(crate) fn write_identify_json(
     results: &[ObjectResult],
     b: &MeaningOfB,
     left_out: &LeftOut,
-    warnings: &[(TracingWarning, String)],
+    warnings: &[(OriginWarning, String)],
 ) -> io::Result<()> {
     let objects: Vec<_> = results.iter().map(|result| ObjectJson { result, meaning: b }).collect();
     let pictures = left_out.pictures.iter().map(|(frame, reason)| PictureJson { frame: *frame, reason }).collect();
@@ -89,7 +89,7 @@ struct Document<'a> {
     objects: Vec<ObjectJson<'a>>,
     b: MeaningJson<'a>,
     left_out: LeftOutJson<'a>,
-    /// Of how the pictures are traced; left out where there are none.
+    /// Of how the outlines were found; left out where there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     warnings: Vec<InputWarningJson<'a>>,
 }

@@ -9,6 +9,7 @@ mod fault_injection;
 mod files;
 mod filter;
 mod fit;
+mod foreign_formats;
 mod guides;
 mod help;
 #[cfg(unix)]
@@ -18,7 +19,9 @@ mod hostile_outputs;
 #[cfg(unix)]
 mod hostile_streams;
 mod identify;
+mod label_masks;
 mod memory;
+mod origin_warnings;
 mod outline;
 mod pears;
 mod picture_drawings;

@@ -1,9 +1,7 @@
 use std::fmt;
 
+use freeform_motion::VelocityUnit;
 use freeform_motion::riccati::{CameraScale, ParameterKind};
-
-/// The unit of a velocity where lengths have no name: of the coordinates of a file, of a plane, of space, of pixels of a stated size.
-const LENGTHS: &str = "lengths/s";
 
 /// The meaning of b: the velocity of the moving frame at a point, in a unit.
 ///
@@ -19,8 +17,8 @@ pub struct MeaningOfB {
     pub point: &'static str,
     /// The unit, before it was divided by a camera scale.
     pub unit: String,
-    /// The unit in a table, after it was divided.
-    pub short_unit: &'static str,
+    /// The unit in tables and in data, after it was divided.
+    pub short_unit: VelocityUnit,
     /// The camera scale by which b was divided.
     pub scale: Option<CameraScale>,
 }
@@ -28,20 +26,25 @@ pub struct MeaningOfB {
 impl MeaningOfB {
     /// The unit of a parameter in a table, by what it is and the unit that its family of motions gives it.
     pub(crate) fn unit_of(&self, kind: ParameterKind, unit: &'static str) -> &'static str {
-        if kind == ParameterKind::Velocity { self.short_unit } else { unit }
+        if kind == ParameterKind::Velocity { self.short_unit.in_table() } else { unit }
     }
 
     /// The unit of a parameter as JSON has it: of a velocity `1/s` where the unit of length has no name, as in the coordinates of a file or after a
     /// division by a camera scale, else that of a table, as `px/s`.
     #[must_use]
     pub fn unit_in_data(&self, kind: ParameterKind, unit: &'static str) -> &'static str {
-        if self.short_unit == LENGTHS { unit } else { self.unit_of(kind, unit) }
+        self.short_unit.of_parameter(kind, unit)
     }
 
     /// In the coordinates of a file.
     #[must_use]
     pub fn in_coordinates(scale: Option<CameraScale>) -> Self {
-        Self { point: "the origin of the coordinates", unit: LENGTHS.to_owned(), short_unit: LENGTHS, scale }
+        Self {
+            point: "the origin of the coordinates",
+            unit: VelocityUnit::Lengths.in_table().to_owned(),
+            short_unit: VelocityUnit::Lengths,
+            scale,
+        }
     }
 
     /// In the plane that pictures are rectified to.
@@ -50,7 +53,7 @@ impl MeaningOfB {
         Self {
             point: "the origin of the plane",
             unit: "lengths of the plane/s".to_owned(),
-            short_unit: LENGTHS,
+            short_unit: VelocityUnit::Lengths,
             scale: None,
         }
     }
@@ -65,11 +68,7 @@ impl MeaningOfB {
             1.0 => "pixels/s".to_owned(),
             size => format!("lengths/s, a pixel {size} high"),
         };
-        let short_unit = match unit.as_str() {
-            "pixels/s" if scale.is_none() => "px/s",
-            "pixel heights/s" if scale.is_none() => "pixel heights/s",
-            _ => LENGTHS,
-        };
+        let short_unit = VelocityUnit::in_pictures(pixel_size, pixel_aspect, scale.is_some());
         Self { point, unit, short_unit, scale }
     }
 

@@ -35,7 +35,7 @@ pub fn parameter_rows(result: &ObjectResult, truth: Option<&Truth>, b: &MeaningO
         rows.extend(normal_rows(result, truth.as_ref().and_then(|(truth, _)| truth.plane)));
     }
     if result.velocity.is_some() || (result.has_velocity() && result.parameters().is_some()) {
-        rows.extend(velocity_rows(result, truth.as_ref().map(|(truth, _)| *truth), &found, b.short_unit));
+        rows.extend(velocity_rows(result, truth.as_ref().map(|(truth, _)| *truth), &found, b.short_unit.in_table()));
     }
     rows
 }

@@ -2,6 +2,7 @@
 //! that nobody has declared. They are found from outlines alone, and the points along them are left out.
 mod buffers;
 mod cut;
+mod edge;
 mod evidence;
 mod line;
 mod places;
@@ -9,5 +10,5 @@ mod registration;
 mod sighting;
 mod standing_edges;
 
-pub use standing_edges::StandingEdge;
+pub use edge::StandingEdge;
 pub(crate) use standing_edges::StandingEdges;

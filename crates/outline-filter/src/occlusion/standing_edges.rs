@@ -7,77 +7,16 @@ use nalgebra::Point2;
 use super::{
     buffers::LookBuffers,
     cut::without,
+    edge::{Edge, StandingEdge, edge_of, push_last},
     evidence::{Pair, Stayed},
-    line::Line,
     places::{Places, median},
-    sighting::{Path, Sighting, extent},
+    sighting::{Sighting, extent},
 };
 use crate::tuning::map::FEWEST_POINTS;
 use crate::tuning::occlusion::{
-    AGREES, ATTENTIVE, FARTHEST, FEWEST_ACROSS, FRAMES_PER_LOOK, FURTHER, GOES_ON, LONGEST_PAIR, LONGEST_PAUSE,
-    LONGEST_WAIT, LOOKS_PER_PART, MOST_EDGES, MOST_KEPT, MOST_WAITS, MOVED, NOISES, PAIRS, WIDTHS_OF_MAP,
+    ATTENTIVE, FARTHEST, FRAMES_PER_LOOK, FURTHER, GOES_ON, LONGEST_PAIR, LONGEST_PAUSE, LONGEST_WAIT, LOOKS_PER_PART,
+    MOST_EDGES, MOST_KEPT, MOST_WAITS, MOVED, NOISES, PAIRS, WIDTHS_OF_MAP,
 };
-
-/// A straight edge that cuts the object off in the picture and is not of it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct StandingEdge {
-    /// One end of what has been seen of it, image coordinates.
-    pub from: Point2<f64>,
-    /// The other end.
-    pub to: Point2<f64>,
-    /// Time of the frame from which on its points were left out, s.
-    pub since: f64,
-}
-
-/// An edge whose points are left out.
-#[derive(Debug, Clone)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Edge {
-    shown: StandingEdge,
-    /// The last pairs that have shown it.
-    sightings: Vec<Sighting>,
-    path: Path,
-    /// Pairs since the last of those in which the contour went on across it.
-    crossed: usize,
-}
-
-impl Edge {
-    /// Points within this distance lie on it.
-    fn width(&self) -> f64 {
-        AGREES * self.sightings.iter().map(Sighting::noise_of_points).fold(0.0, f64::max)
-    }
-
-    /// How far along a line that is its own what has been seen of it reaches.
-    fn reach(&self, line: &Line) -> [f64; 2] {
-        extent([self.shown.from, self.shown.to].iter().map(|p| line.place(p)))
-    }
-
-    /// Whether a contour goes on across it, where it was seen: then nothing is hidden there.
-    fn is_crossed_by(&self, places: &Places, noise: f64, time: f64) -> bool {
-        let line = self.path.line_at(time);
-        let [low, high] = self.reach(&line);
-        let within = |p: &Point2<f64>| (low..=high).contains(&line.place(p));
-        let distances = || places.iter().filter(within).map(|p| line.distance(&p));
-        let off = AGREES * noise;
-        distances().filter(|d| *d > off).count().min(distances().filter(|d| *d < -off).count()) >= FEWEST_ACROSS
-    }
-
-    /// Follows the line where another pair shows it.
-    fn follow(&mut self, seen: Sighting) {
-        push_last(&mut self.sightings, seen, MOST_KEPT);
-        if let Some(path) = Path::of(&self.sightings.iter()) {
-            self.path = path;
-        }
-        self.crossed = 0;
-        if let Some(seen) = self.sightings.last() {
-            let line = self.path.line_at(seen.time);
-            let seen_ends = seen.reach.map(|place| line.place(&seen.line.at(place)));
-            let [low, high] = extent(self.reach(&line).into_iter().chain(seen_ends));
-            (self.shown.from, self.shown.to) = (line.at(low), line.at(high));
-        }
-    }
-}
 
 /// The contour that those after it are compared with.
 #[derive(Debug, Clone)]
@@ -111,6 +50,8 @@ pub(crate) struct StandingEdges {
     key: Option<Key>,
     sightings: Vec<Sighting>,
     edges: Vec<Edge>,
+    /// The last edges that were dropped.
+    former: Vec<StandingEdge>,
     #[cfg_attr(feature = "serde", serde(skip))]
     buffers: LookBuffers,
 }
@@ -119,6 +60,11 @@ impl StandingEdges {
     /// The edges found so far.
     pub(crate) fn found(&self) -> impl ExactSizeIterator<Item = StandingEdge> + '_ {
         self.edges.iter().map(|edge| edge.shown)
+    }
+
+    /// The last edges that are edges no more.
+    pub(crate) fn former(&self) -> impl ExactSizeIterator<Item = StandingEdge> + '_ {
+        self.former.iter().copied()
     }
 
     /// Looks at the outline of the next frame, at a time in seconds; whether it shows an edge that was not known. Where nothing has been seen for
@@ -197,7 +143,11 @@ impl StandingEdges {
         let time = self.time;
         self.edges.retain_mut(|edge| {
             edge.crossed += usize::from(edge.is_crossed_by(places, noise, time));
-            edge.crossed < PAIRS
+            let is_kept = edge.crossed < PAIRS;
+            if !is_kept {
+                push_last(&mut self.former, StandingEdge { until: Some(time), ..edge.shown }, MOST_EDGES);
+            }
+            is_kept
         });
     }
 
@@ -295,9 +245,11 @@ impl StandingEdges {
         let are_sightings = |all: &[Sighting]| {
             all.len() <= MOST_KEPT && all.iter().all(|seen| seen.is_valid() && seen.pair <= self.pairs)
         };
+        let is_shown = |StandingEdge { from, to, since, until }: &StandingEdge| {
+            [from.x, from.y, to.x, to.y, *since, until.unwrap_or(0.0)].iter().all(|x| x.is_finite())
+        };
         let is_edge = |edge: &Edge| {
-            let StandingEdge { from, to, since } = edge.shown;
-            [from.x, from.y, to.x, to.y, since].iter().all(|x| x.is_finite())
+            is_shown(&edge.shown)
                 && !edge.sightings.is_empty()
                 && are_sightings(&edge.sightings)
                 && edge.path.is_valid()
@@ -311,16 +263,9 @@ impl StandingEdges {
             && are_sightings(&self.sightings)
             && self.edges.len() <= MOST_EDGES
             && self.edges.iter().all(is_edge)
+            && self.former.len() <= MOST_EDGES
+            && self.former.iter().all(is_shown)
     }
-}
-
-/// Adds to the last values of a list, which has room for all of them from the first on.
-fn push_last<T>(list: &mut Vec<T>, value: T, most: usize) {
-    if list.len() == most {
-        list.remove(0);
-    }
-    list.reserve_exact(most - list.len());
-    list.push(value);
 }
 
 /// The edge that the last of some pairs shows, if enough before it show the same line, at rest or moving at a constant velocity.
@@ -332,19 +277,11 @@ fn confirmed(sightings: &[Sighting]) -> Option<Edge> {
     edge_of(&standing, last).or_else(|| edge_of(&latest, last))
 }
 
-/// The edge that some pairs show, if they are enough, as far as the last one shows it.
-fn edge_of<'a>(sightings: &(impl Iterator<Item = &'a Sighting> + Clone), last: &Sighting) -> Option<Edge> {
-    let path = Path::of(sightings).filter(|_| sightings.clone().count() >= PAIRS)?;
-    let line = path.line_at(last.time);
-    let [from, to] = extent(last.reach.iter().map(|place| line.place(&last.line.at(*place)))).map(|x| line.at(x));
-    let sightings = sightings.clone().cloned().collect();
-    Some(Edge { shown: StandingEdge { from, to, since: last.time }, sightings, path, crossed: 0 })
-}
-
 #[cfg(all(test, feature = "serde"))]
 mod tests {
     use nalgebra::Vector2;
 
+    use super::super::line::Line;
     use super::*;
 
     type Damage = fn(&mut StandingEdges);
@@ -359,13 +296,15 @@ mod tests {
         let seen = |time| Sighting { time, pair: 0, line, reach: [-0.4, 0.5], noise: 0.01, points_each: 1 };
         edges.sightings = [0.1, 0.2, 0.3].map(seen).to_vec();
         edges.edges.push(confirmed(&edges.sightings).expect("three of one line"));
+        edges.former.push(StandingEdge { until: Some(0.4), ..edges.edges[0].shown });
         edges
     }
 
     #[test]
     fn damaged_edges_are_not_valid() {
         assert!(with_edge().is_valid(1000));
-        let damages: [(&str, Damage); 16] = [
+        let damages: [(&str, Damage); 17] = [
+            ("dropped at no time", |e| e.former[0].until = Some(f64::NAN)),
             ("noise without end", |e| e.sightings[0].noise = f64::INFINITY),
             ("a reach that is no number", |e| e.sightings[0].reach[1] = f64::NAN),
             ("a reach the wrong way round", |e| e.sightings[0].reach = [0.5, -0.4]),

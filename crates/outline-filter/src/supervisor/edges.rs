@@ -18,6 +18,12 @@ impl MotionFilter {
         self.edges.found()
     }
 
+    /// Edges whose points were left out for a while, until the outline was seen to go on across them, which is [`until`](StandingEdge::until) then;
+    /// the last of them.
+    pub fn former_edges(&self) -> impl ExactSizeIterator<Item = StandingEdge> + '_ {
+        self.edges.former()
+    }
+
     /// Counted up from 0 where poses no longer go back to the same first outline: after a [restart](Self::restarts), and where a frame has shown the
     /// turn of the object for the first time, since nobody knows how far it had turned until then, and where an [edge](Self::standing_edges) was
     /// found not to be of the object.

@@ -8,7 +8,9 @@ pub enum FilterError {
     #[error(transparent)]
     TimeNotIncreasing(#[from] TimeNotIncreasing),
     /// Too few points to start a map from.
-    #[error("{found} points where at least {needed} are needed to start")]
+    #[error(
+        "{found} points where at least {needed} are needed to start, along the sides of a polygon too and not at its corners alone"
+    )]
     TooFewPoints {
         /// Points of the outline.
         found: usize,

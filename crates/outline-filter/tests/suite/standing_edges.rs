@@ -1,6 +1,6 @@
 //! Straight edges of what is in front of an object, that nobody has declared.
 use freeform_curve_fit::Outline;
-use freeform_outline_filter::{FilterSettings, MotionFilter, Phase, Rejection};
+use freeform_outline_filter::{FilterSettings, MotionFilter, Phase, Rejection, StandingEdge};
 use freeform_riccati::MotionModel;
 use nalgebra::{Isometry2, Point2, Vector2};
 use rand::{RngExt as _, SeedableRng as _};
@@ -252,6 +252,9 @@ fn an_edge_that_has_left_is_dropped_and_the_whole_body_is_followed() {
         assert!(frame != 59 || run.standing_edges().len() == 1, "it was there");
     }
     assert_eq!(run.standing_edges().len(), 0, "{:?}", run.standing_edges().next());
+    let former: Vec<_> = run.former_edges().collect();
+    let [StandingEdge { since, until: Some(until), .. }] = former[..] else { panic!("{former:?}") };
+    assert!(since < 60.0 / FRAME_RATE && until > 60.0 / FRAME_RATE, "{former:?}");
     assert_eq!(run.restarts(), 0);
     assert_turns(&run, 0.9, "afterwards");
 }
@@ -287,6 +290,7 @@ fn a_hand_in_front_of_a_box_at_rest_makes_no_edges_of_its_sides() {
         run.step(time, &outline).expect("increasing times");
     }
     assert_eq!(run.standing_edges().len(), 0, "{:?}", run.standing_edges().next());
+    assert_eq!(run.former_edges().len(), 0);
 }
 
 #[test]
@@ -322,6 +326,7 @@ fn where_one_straight_line_moves_and_the_rest_stays_nothing_says_which_of_them_i
     let hidden = Hidden { normal: -Vector2::x(), offset: 0.25, drift: -0.004 };
     let run = followed(triangle, |_| Isometry2::identity(), Some(hidden), (80, 6));
     assert_eq!(run.standing_edges().len(), 0, "{:?}", run.standing_edges().next());
+    assert_eq!(run.former_edges().len(), 0);
 }
 
 #[test]

@@ -44,6 +44,17 @@ pub struct TracingEvidence {
     pub score: f64,
 }
 
+impl TracingEvidence {
+    /// Ways with their places in a list, the highest score first. [`TracingChoice::candidates`](super::TracingChoice) has the one that is taken in
+    /// front of them, whatever its score.
+    #[must_use]
+    pub fn by_score(ways: &[Self]) -> Vec<(usize, &Self)> {
+        let mut ranked: Vec<_> = ways.iter().enumerate().collect();
+        ranked.sort_by(|(_, a), (_, b)| b.score.total_cmp(&a.score));
+        ranked
+    }
+}
+
 /// Tries a way; `None` where it finds nothing.
 pub(super) fn judged(trial: &Trial, tracing: Tracing) -> Option<TracingEvidence> {
     evidence_of(trial, tracing, &trial.sights(&tracing))

@@ -14,6 +14,8 @@ mod identities;
 mod labels;
 mod lists;
 #[cfg(feature = "parquet")]
+mod origin_warnings;
+#[cfg(feature = "parquet")]
 mod parquet;
 #[cfg(feature = "parquet")]
 mod parquet_deviations;

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._masks import check_masks, split_tracing, traced, tracer_of
-from ._native import LabelTracer, ObjectResult, Observation, Recorder, Tracker, identify_table, track_table
+from ._native import LabelTracer, ObjectResult, Observation, Recorder, Tracker, identify_table, results_of, track_table
 from ._outline_lists import is_outline_list, outlines_by_frame, simulated_times
 from ._progress import progress_bar
-from ._tables import kind_of, native_table, table_like, with_names
+from ._tables import kind_of, read_table, table_like, with_names
 from ._times import times_of
 
 
@@ -145,12 +145,13 @@ def identify(
     kind = kind_of(data)
     tracer, tracker = _split(options, data, kind, times, columns, motion=motion, method=method, scale=scale)
     if kind is not None:
+        table, origin = read_table(data, columns, fps)
         with progress_bar(progress, None) as advance:
-            identify_table(tracker, native_table(data, columns, fps), advance)
-    else:
-        for _ in _follow(tracker, data, fps, times, tracer, progress):
-            pass
-    return Identification(tracker.results())
+            identify_table(tracker, table, advance)
+        return Identification(results_of(tracker, None, origin))
+    for _ in _follow(tracker, data, fps, times, tracer, progress):
+        pass
+    return Identification(results_of(tracker, tracer))
 
 
 def track(
@@ -197,8 +198,9 @@ def track(
     kind = kind_of(data)
     tracer, tracker = _split(options, data, kind, times, columns, motion=motion, method=method, scale=scale)
     if kind is not None:
+        table, _ = read_table(data, columns, fps)
         with progress_bar(progress, None) as advance:
-            found = track_table(tracker, native_table(data, columns, fps), smooth, advance)
+            found = track_table(tracker, table, smooth, advance)
     else:
         recorder = Recorder(tracker)
         for observation in _follow(tracker, data, fps, times, tracer, progress):

@@ -35,7 +35,9 @@ __all__ = [
     "fit",
     "homography",
     "identify_table",
+    "origin_warnings",
     "outlines_of_table",
+    "results_of",
     "simulate",
     "track_table",
 ]
@@ -550,6 +552,10 @@ def outlines_of_table(table: NativeTable) -> list[tuple[str, Outline]]: ...
 def identify_table(
     tracker: Tracker, table: NativeTable, progress: Callable[[int], object] | None = None
 ) -> None: ...
+def results_of(
+    tracker: Tracker, tracer: LabelTracer | None = None, origin: list[ResultWarning] = ...
+) -> list[ObjectResult]: ...
+def origin_warnings(texts: list[str]) -> list[ResultWarning]: ...
 def track_table(
     tracker: Tracker,
     table: NativeTable,

@@ -11,7 +11,7 @@ from ._identify import only_for_masks
 from ._masks import check_masks, split_tracing, traced, tracer_of
 from ._native import Evidence, Outline, Recogniser, Recognition, outlines_of_table
 from ._outline_lists import is_outline_list, outlines_by_frame
-from ._tables import kind_of, native_table
+from ._tables import kind_of, read_table
 
 
 def recognise(
@@ -78,7 +78,8 @@ def _outlines(
         raise TypeError(f"recognise() got unexpected arguments: {', '.join(others)}")
     if kind_of(data) is not None:
         only_for_masks(tracing)
-        yield from outlines_of_table(native_table(data, columns, None, times_matter=False))
+        table, _ = read_table(data, columns, None, times_matter=False)
+        yield from outlines_of_table(table)
         return
     if columns is not None:
         raise TypeError("columns: only for tables")

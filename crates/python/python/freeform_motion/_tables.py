@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -10,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._lists import Lists, are_lists, library_of, mark_lists, merged, number_lists, rows_of
-from ._native import Outline, Simulation
+from ._native import Outline, ResultWarning, Simulation, origin_warnings
 from ._times import frame_rate
 
 REQUIRED = ("frame", "x", "y")
-ALL = ("object", "frame", "time", "x", "y", "arc", "contour", "deviation")
+ALL = ("object", "frame", "time", "x", "y", "arc", "contour", "deviation", "warning")
 
 #: Columns that are named where one is missing.
 _MOST_NAMED = 12
@@ -57,6 +58,23 @@ def kind_of(data: object) -> str | None:
     return None
 
 
+def read_table(
+    data: Any, columns: Mapping[str, str] | None, fps: float | None, *, times_matter: bool = True
+) -> tuple[NativeTable, list[ResultWarning]]:
+    """The columns of a table of outlines, as `native_table`, and what its column `warning` says of how they were found, which is warned of."""
+    table = _with_columns(data)
+    native = native_table(table, columns, fps, times_matter=times_matter)
+    name = (columns or {}).get("warning", "warning")
+    texts: list[str] = []
+    # A column of this name may be that of another program, of any type, and there may be several.
+    if column_names(table).count(name) == 1 and not are_lists(table[name]):
+        texts = [value for value in factorise(table[name])[1] if isinstance(value, str)]
+    told = origin_warnings(texts)
+    for warning in told:
+        warnings.warn(f"the table says of its outlines: {warning.message} (column {name}: {warning.code})", stacklevel=3)
+    return native, told
+
+
 def native_table(
     table: Any, columns: Mapping[str, str] | None, fps: float | None, *, times_matter: bool = True
 ) -> NativeTable:
@@ -67,7 +85,7 @@ def native_table(
     table : pandas.DataFrame, polars.DataFrame, pyarrow.Table or mapping of arrays
         One row per point, or one row per outline with lists.
     columns : mapping of str to str, optional
-        Names of the columns where they are not `object`, `frame`, `time`, `x`, `y`, `arc`, `contour` and `deviation`.
+        Names of the columns where they are not `object`, `frame`, `time`, `x`, `y`, `arc`, `contour`, `deviation` and `warning`.
     fps : float, optional
         Frames per second, where there is no column `time`.
     times_matter : bool

@@ -1,0 +1,68 @@
+//! Whether pictures are taken for label masks.
+use freeform_motion::outline_io::{LabelEvidence, PicturePreview};
+
+use crate::args::{ObjectsChoice, PictureOptions};
+use crate::failure::Failure;
+
+/// What is to be done with pictures that may be label masks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum LabelChoice {
+    /// Every label is an object, as the options say or as the pictures do.
+    Labels(Option<LabelEvidence>),
+    /// They are traced by their grey values, and look as label masks do.
+    Maybe(LabelEvidence),
+    /// They are traced by their grey values.
+    Greys,
+}
+
+impl LabelChoice {
+    /// What options and pictures say.
+    ///
+    /// # Errors
+    /// Labels are asked for where there are none, or with options that are not for them.
+    pub(crate) fn of(options: &PictureOptions, preview: &PicturePreview) -> Result<Self, Failure> {
+        let not_for_labels = options.not_for_labels();
+        if options.objects == Some(ObjectsChoice::Labels) {
+            refuse(&not_for_labels)?;
+            return match preview.single_files() {
+                Some(_) => Ok(Self::Labels(None)),
+                None => Err(refused_stream()),
+            };
+        }
+        let is_open = matches!(options.objects, None | Some(ObjectsChoice::All)) && !options.has_way();
+        if !is_open || !not_for_labels.is_empty() {
+            return Ok(Self::Greys);
+        }
+        Ok(match preview.label_evidence() {
+            Some(evidence) if evidence.is_convincing() => Self::Labels(Some(evidence)),
+            Some(evidence) if evidence.are_on_ground => Self::Maybe(evidence),
+            _ => Self::Greys,
+        })
+    }
+
+    /// What should be known of it.
+    pub(crate) fn note(self) -> Option<String> {
+        match self {
+            Self::Labels(Some(LabelEvidence { labels, .. })) => Some(format!(
+                "label masks: each of the {labels} values seen is an object, by its number (--objects labels; --light takes what is lighter than a \
+                 threshold instead)"
+            )),
+            Self::Maybe(LabelEvidence { labels, .. }) => Some(format!(
+                "the pictures have flat areas of {labels} grey values, as label masks have: --objects labels takes each value for an object"
+            )),
+            Self::Labels(None) | Self::Greys => None,
+        }
+    }
+}
+
+/// That labels are asked for where pictures are not files of one each.
+pub(crate) fn refused_stream() -> Failure {
+    Failure::unusable("--objects labels: label masks are read from files of one picture each (PNG, TIFF, BMP)")
+}
+
+fn refuse(not_for_labels: &[&str]) -> Result<(), Failure> {
+    match not_for_labels {
+        [] => Ok(()),
+        given => Err(Failure::unusable(format_args!("--objects labels: not with {}", given.join(", ")))),
+    }
+}

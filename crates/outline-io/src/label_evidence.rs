@@ -1,0 +1,137 @@
+//! Whether pictures are label masks.
+use std::collections::BTreeMap;
+
+use crate::label_pictures::LabelPicture;
+
+/// Pixels of a value over its runs along rows or columns, below which it is scattered: the grey values of smoothed edges and of noise are, labels
+/// are not.
+const SHORT_RUN: u64 = 2;
+
+/// Share of the pixels beside the ground that may have scattered values: labels may be slivers where they leave the picture. Of a smoothed body of
+/// 300 pixels across a hundredth lies on its edge.
+const MOST_SCATTERED: f64 = 0.005;
+
+/// Pixels by which noise is told from labels.
+const ENOUGH_PIXELS: u64 = 4096;
+
+/// Share of the pixels at the sides of a picture that are ground.
+const LEAST_GROUND: f64 = 0.5;
+
+/// Labels are counted from 1: the largest is up to this, or up to so many times their number, as of some the objects have left.
+const LARGEST_NUMBER: i64 = 32;
+const LARGEST_PER_LABEL: i64 = 4;
+
+/// What speaks for it that pictures are label masks: their ground is 0, and other values fill areas of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LabelEvidence {
+    /// Different labels in the pictures that were looked at, two at least.
+    pub labels: usize,
+    /// Whether they are small numbers, as labels are and grey values hardly ever.
+    pub are_numbers: bool,
+    /// Whether no two labels touch.
+    pub are_apart: bool,
+    /// Whether every label borders on the ground with half of its edge or more: a mark on a body does not.
+    pub are_on_ground: bool,
+}
+
+impl LabelEvidence {
+    /// Whether every label is an object beyond doubt: small numbers, or bodies of flat grey values that are apart.
+    #[must_use]
+    pub const fn is_convincing(&self) -> bool {
+        self.are_numbers || self.are_apart
+    }
+
+    /// Looks at pictures; `None` where one of them is no label mask, or there are less than two labels.
+    pub(crate) fn of(pictures: impl IntoIterator<Item = Option<LabelPicture>>) -> Option<Self> {
+        let mut all: BTreeMap<i64, Border> = BTreeMap::new();
+        for picture in pictures {
+            for (label, border) in borders(&picture?)? {
+                let known = all.entry(label).or_default();
+                known.on_ground += border.on_ground;
+                known.on_others += border.on_others;
+            }
+        }
+        let largest = *all.last_key_value().filter(|_| all.len() >= 2)?.0;
+        Some(Self {
+            labels: all.len(),
+            are_numbers: largest <= LARGEST_NUMBER || largest <= LARGEST_PER_LABEL * all.len() as i64,
+            are_apart: all.values().all(|border| border.on_others == 0),
+            are_on_ground: all.values().all(|border| border.on_ground >= border.on_others),
+        })
+    }
+}
+
+/// Sides of pixels of a label that are its edge.
+#[derive(Debug, Clone, Copy, Default)]
+struct Border {
+    on_ground: u64,
+    on_others: u64,
+}
+
+/// How the pixels of a value lie.
+#[derive(Debug, Clone, Copy, Default)]
+struct Tally {
+    pixels: u64,
+    /// Runs along rows, and along columns.
+    runs: [u64; 2],
+    border: Border,
+}
+
+/// The edges of every label of a picture; `None` where it is no label mask.
+fn borders(LabelPicture { width, height, labels }: &LabelPicture) -> Option<BTreeMap<i64, Border>> {
+    let at = |column: usize, row: usize| labels[row * width + column];
+    let sides = (0..*width).flat_map(|column| [at(column, 0), at(column, height - 1)]);
+    let sides = sides.chain((0..*height).flat_map(|row| [at(0, row), at(width - 1, row)]));
+    let ground = sides.filter(|label| *label == 0).count();
+    if (ground as f64) < LEAST_GROUND * (2 * (width + height)) as f64 {
+        return None;
+    }
+    let mut tallies: BTreeMap<i64, Tally> = BTreeMap::new();
+    let (mut pixels, mut runs) = (0, 0);
+    for (row, line) in labels.chunks_exact(*width).enumerate() {
+        let mut column = 0_usize;
+        for run in line.chunk_by(|a, b| a == b) {
+            let label = run[0];
+            if label > 0 {
+                let tally = tallies.entry(label).or_default();
+                tally.pixels += run.len() as u64;
+                tally.runs[0] += 1;
+                pixels += run.len() as u64;
+                runs += 1;
+                let beside = [column.checked_sub(1), Some(column + run.len()).filter(|end| end < width)];
+                beside.into_iter().flatten().for_each(|other| tally.border.meets(at(other, row)));
+                for column in column..column + run.len() {
+                    let above = row.checked_sub(1).map(|row| at(column, row));
+                    let below = Some(row + 1).filter(|row| row < height).map(|row| at(column, row));
+                    tally.runs[1] += u64::from(above != Some(label));
+                    [above, below]
+                        .into_iter()
+                        .flatten()
+                        .filter(|other| *other != label)
+                        .for_each(|other| tally.border.meets(other));
+                }
+            }
+            column += run.len();
+        }
+        // Noise is seen in the first rows.
+        if pixels > ENOUGH_PIXELS && pixels < SHORT_RUN * runs {
+            return None;
+        }
+    }
+    let is_scattered = |tally: &&Tally| tally.runs.iter().any(|runs| tally.pixels < SHORT_RUN * runs);
+    let all: u64 = tallies.values().map(|tally| tally.pixels).sum();
+    let scattered: u64 = tallies.values().filter(is_scattered).map(|tally| tally.pixels).sum();
+    if scattered as f64 > MOST_SCATTERED * all as f64 {
+        return None;
+    }
+    Some(tallies.into_iter().map(|(label, tally)| (label, tally.border)).collect())
+}
+
+impl Border {
+    fn meets(&mut self, other: i64) {
+        match other {
+            0 => self.on_ground += 1,
+            _ => self.on_others += 1,
+        }
+    }
+}

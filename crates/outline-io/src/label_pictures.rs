@@ -1,0 +1,230 @@
+//! Label masks in files of pictures.
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use image::{DynamicImage, GrayImage};
+
+use crate::frame::OutlineFrame;
+use crate::labels::{LabelMask, TracedLabel};
+use crate::picture::read_picture_colours;
+use crate::picture_error::{PictureError, PictureErrorKind, TraceError};
+use crate::source_picture::SourcePicture;
+use crate::trace_settings::TraceSettings;
+use crate::traced_pictures::{TracedPicture, TracingSummary};
+
+/// Frames per second where none are given.
+const DEFAULT_RATE: f64 = 30.0;
+
+/// Share of the largest part of a label from which on the next largest is told of.
+const LIKE_AN_OBJECT: f64 = 0.25;
+
+/// Grey values that labels are drawn with: the darkest, and how many there are.
+const DRAWN: [u64; 2] = [96, 160];
+
+/// Step from one of these to that of the next label: neighbours are told apart.
+const DRAWN_STEP: u64 = 61;
+
+/// The labels of a picture.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct LabelPicture {
+    pub(crate) width: usize,
+    pub(crate) height: usize,
+    pub(crate) labels: Vec<i64>,
+}
+
+impl LabelPicture {
+    pub(crate) fn read(path: &Path) -> Result<Self, PictureError> {
+        let not_labels = || PictureError::of_file(path.display().to_string(), PictureErrorKind::NotLabels);
+        read_picture_colours(path).and_then(|picture| Self::of(&picture).ok_or_else(not_labels))
+    }
+
+    /// The grey values, or the numbers of colours that label masks are painted with; nothing of other pictures.
+    pub(crate) fn of(picture: &DynamicImage) -> Option<Self> {
+        let (width, height) = (picture.width() as usize, picture.height() as usize);
+        let labels = match picture {
+            DynamicImage::ImageLuma8(grey) => grey.as_raw().iter().map(|value| i64::from(*value)).collect(),
+            DynamicImage::ImageLuma16(grey) => grey.as_raw().iter().map(|value| i64::from(*value)).collect(),
+            _ => labels_of_colours(picture)?,
+        };
+        Some(Self { width, height, labels })
+    }
+
+    /// As it is drawn upon.
+    fn drawn(&self) -> GrayImage {
+        let [darkest, count] = DRAWN;
+        let grey = |label: &i64| match u64::try_from(*label) {
+            Ok(label) if label > 0 => u8::try_from(darkest + label.wrapping_mul(DRAWN_STEP) % count).unwrap_or(u8::MAX),
+            _ => 0,
+        };
+        let greys = self.labels.iter().map(grey).collect();
+        GrayImage::from_raw(self.width as u32, self.height as u32, greys).unwrap_or_default()
+    }
+}
+
+/// Labels by the colours of a picture of 8 bits without transparency: grey ones, or those of the palette of PASCAL VOC and DAVIS, whose first 256
+/// numbers are spread over the bits of red, green and blue.
+fn labels_of_colours(picture: &DynamicImage) -> Option<Vec<i64>> {
+    let is_plain =
+        matches!(picture, DynamicImage::ImageRgb8(_) | DynamicImage::ImageRgba8(_) | DynamicImage::ImageLumaA8(_));
+    if !is_plain {
+        return None;
+    }
+    let colours = picture.to_rgba8();
+    let (pixels, _) = colours.as_raw().as_chunks::<4>();
+    if pixels.iter().any(|[.., alpha]| *alpha < u8::MAX) {
+        return None;
+    }
+    if pixels.iter().all(|[red, green, blue, _]| red == green && green == blue) {
+        return Some(pixels.iter().map(|[grey, ..]| i64::from(*grey)).collect());
+    }
+    let numbers: BTreeMap<[u8; 3], i64> = (0..256).map(|number| (palette_colour(number), number)).collect();
+    let mut latest = ([0; 3], 0);
+    let number = |[red, green, blue, _]: &[u8; 4]| {
+        let colour = [*red, *green, *blue];
+        if colour != latest.0 {
+            latest = (colour, *numbers.get(&colour)?);
+        }
+        Some(latest.1)
+    };
+    pixels.iter().map(number).collect()
+}
+
+/// The colour that the palette of PASCAL VOC gives a number: its bits three by three, the lowest into the highest of red, green and blue.
+fn palette_colour(number: i64) -> [u8; 3] {
+    let channel = |first: i64| {
+        (0..3).fold(0, |colour, digit| colour | (((number >> (3 * digit + first)) & 1) as u8) << (7 - digit))
+    };
+    [channel(0), channel(1), channel(2)]
+}
+
+/// The outlines of every label in a sequence of label masks, one picture after the other, under the labels as names: of grey pictures of 8 or 16
+/// bits their values, of those with the palette of PASCAL VOC and DAVIS the numbers of the colours. 0 is the ground.
+#[derive(Debug)]
+pub struct LabelPictures {
+    files: Vec<PathBuf>,
+    next: usize,
+    rate: f64,
+    trace: TraceSettings,
+    summary: TracingSummary,
+    in_parts: Option<LabelInParts>,
+}
+
+/// A label in several parts, of which the largest is taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LabelInParts {
+    /// Number of the picture.
+    pub frame: u64,
+    /// The label.
+    pub label: i64,
+    /// Pixels of the part that is taken.
+    pub largest: u64,
+    /// Pixels of the next largest.
+    pub next: u64,
+}
+
+impl LabelPictures {
+    /// The masks in these files, with so many frames per second, 30 if none are given; margins are not looked at.
+    ///
+    /// # Errors
+    /// A setting out of range.
+    pub fn new(files: Vec<PathBuf>, frames_per_second: Option<f64>, trace: TraceSettings) -> Result<Self, TraceError> {
+        trace.check()?;
+        let rate = frames_per_second.unwrap_or(DEFAULT_RATE);
+        Ok(Self { files, next: 0, rate, trace, summary: TracingSummary::default(), in_parts: None })
+    }
+
+    /// Number of pictures.
+    #[must_use]
+    pub fn frame_count(&self) -> u64 {
+        self.files.len() as u64
+    }
+
+    /// How outlines are traced.
+    #[must_use]
+    pub const fn trace(&self) -> &TraceSettings {
+        &self.trace
+    }
+
+    /// Size of the pictures, and the last of them.
+    #[must_use]
+    pub const fn summary(&self) -> TracingSummary {
+        self.summary
+    }
+
+    /// The first label of the masks so far whose next largest part has a quarter of the area of its largest, or more.
+    #[must_use]
+    pub const fn in_parts(&self) -> Option<LabelInParts> {
+        self.in_parts
+    }
+
+    fn read(&mut self, path: &Path) -> Result<LabelPicture, PictureError> {
+        let failed = |kind| PictureError::of_file(path.display().to_string(), kind);
+        // To open a pipe is to wait for somebody who writes to it.
+        if !path.is_file() && path.exists() {
+            return Err(failed(PictureErrorKind::NotAFile));
+        }
+        let picture = LabelPicture::read(path)?;
+        let (width, height) = (picture.width as u32, picture.height as u32);
+        let (first_width, first_height) = *self.summary.size.get_or_insert((width, height));
+        if (width, height) != (first_width, first_height) {
+            return Err(failed(PictureErrorKind::SizeChanged { width, height, first_width, first_height }));
+        }
+        Ok(picture)
+    }
+
+    /// The outlines of a mask; labels of less than the smallest area are specks, and no objects.
+    fn outlines(&mut self, picture: &LabelPicture, frame: u64, time: f64) -> Result<Vec<OutlineFrame>, TraceError> {
+        let mask = LabelMask::new(&picture.labels, picture.width, picture.height)?;
+        let traced = mask.trace(&self.trace)?;
+        let (mut outlines, mut refused) = (Vec::new(), None);
+        for TracedLabel { label, outline, next_part: next } in traced {
+            match outline {
+                Ok(traced) => {
+                    let largest = traced.pixel_count;
+                    if next as f64 >= LIKE_AN_OBJECT * largest as f64 {
+                        self.in_parts.get_or_insert(LabelInParts { frame, label, largest, next });
+                    }
+                    outlines.push(OutlineFrame { frame, time, object: label.to_string(), outline: traced.outline });
+                }
+                Err(error) => refused = refused.or(Some(error)),
+            }
+        }
+        match refused {
+            _ if !outlines.is_empty() => Ok(outlines),
+            Some(error) => Err(error),
+            None => Err(TraceError::Uniform { value: 0 }),
+        }
+    }
+}
+
+impl Iterator for LabelPictures {
+    type Item = Result<TracedPicture, PictureError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let path = self.files.get(self.next)?.clone();
+        let frame = self.next as u64;
+        self.next += 1;
+        let time = frame as f64 / self.rate;
+        let picture = match self.read(&path) {
+            Ok(picture) => picture,
+            Err(error) => return Some(Err(error)),
+        };
+        self.summary.last = Some((frame, time));
+        let outlines = self.outlines(&picture, frame, time);
+        let grid = self.trace.pixel_grid(picture.height as u32);
+        let source = SourcePicture { frame, time, picture: Arc::new(picture.drawn()), grid };
+        Some(Ok(TracedPicture { source, file: path.display().to_string(), outlines }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_palette_is_that_of_pascal_voc() {
+        let known = [(0, [0, 0, 0]), (1, [128, 0, 0]), (2, [0, 128, 0]), (3, [128, 128, 0]), (15, [192, 128, 128])];
+        known.into_iter().for_each(|(number, colour)| assert_eq!(palette_colour(number), colour, "{number}"));
+    }
+}

@@ -1,0 +1,148 @@
+use std::fmt;
+
+use crate::choice::TracingWarning;
+
+/// What a user should know of how outlines were found: what the program that found them said, which goes with them in the column `warning` of a
+/// table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OriginWarning {
+    /// [`TracingWarning::Doubtful`].
+    TracingDoubtful,
+    /// [`TracingWarning::MovesBesideRest`].
+    MovesBesideRest,
+    /// [`TracingWarning::MovesBeside`].
+    MovesBeside,
+    /// Nothing tells the rate of the frames, so that one was assumed.
+    RateAssumed,
+    /// Every second line of the pictures is of another moment.
+    Interlaced,
+    /// The pictures were taken in another order than their numbers have.
+    FilesOutOfOrder,
+}
+
+impl OriginWarning {
+    /// All of them, what makes outlines worthless first.
+    pub const ALL: [Self; 6] = [
+        Self::TracingDoubtful,
+        Self::MovesBesideRest,
+        Self::MovesBeside,
+        Self::FilesOutOfOrder,
+        Self::RateAssumed,
+        Self::Interlaced,
+    ];
+
+    /// A short name that stays the same.
+    #[must_use]
+    pub const fn code(self) -> &'static str {
+        match self {
+            Self::TracingDoubtful => "tracing_doubtful",
+            Self::MovesBesideRest => "moves_beside_rest",
+            Self::MovesBeside => "moves_beside",
+            Self::RateAssumed => "rate_assumed",
+            Self::Interlaced => "interlaced",
+            Self::FilesOutOfOrder => "files_out_of_order",
+        }
+    }
+
+    const fn bit(self) -> u8 {
+        1 << self as u8
+    }
+}
+
+impl fmt::Display for OriginWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::TracingDoubtful => {
+                "no way of tracing tells an object from the ground beyond doubt: values may be those of something else"
+            }
+            Self::MovesBesideRest => "what is traced rests, and something else changes",
+            Self::MovesBeside => "something else than what is traced moves",
+            Self::RateAssumed => {
+                "the rate of the frames was assumed, as nothing tells it: velocities are right at that rate only"
+            }
+            Self::Interlaced => {
+                "the video is interlaced: every second line is of another moment, which frays the edges of what moves"
+            }
+            Self::FilesOutOfOrder => "the pictures were taken in another order than their numbers have",
+        })
+    }
+}
+
+impl From<TracingWarning> for OriginWarning {
+    fn from(warning: TracingWarning) -> Self {
+        match warning {
+            TracingWarning::Doubtful => Self::TracingDoubtful,
+            TracingWarning::MovesBesideRest { .. } => Self::MovesBesideRest,
+            TracingWarning::MovesBeside { .. } => Self::MovesBeside,
+        }
+    }
+}
+
+/// A set of [`OriginWarning`]s. As text, and in the column `warning`, it is their codes with spaces between.
+///
+/// ```
+/// use freeform_outline_io::{OriginWarning, OriginWarnings};
+///
+/// let of_a_row = OriginWarnings::of_text("tracing_doubtful, and what another program says");
+/// assert!(of_a_row.iter().eq([OriginWarning::TracingDoubtful]));
+/// assert_eq!(of_a_row.to_string(), "tracing_doubtful");
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct OriginWarnings(u8);
+
+impl OriginWarnings {
+    /// None at all.
+    pub const NONE: Self = Self(0);
+
+    /// Those whose codes are words of a text. Other words say nothing, as another program may have a column of this name.
+    #[must_use]
+    pub fn of_text(text: &str) -> Self {
+        let words = text.split(|character: char| !(character.is_ascii_alphanumeric() || character == '_'));
+        words.filter_map(|word| OriginWarning::ALL.into_iter().find(|warning| warning.code() == word)).collect()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub const fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// Whether a warning is among them.
+    #[must_use]
+    pub const fn contains(self, warning: OriginWarning) -> bool {
+        self.0 & warning.bit() != 0
+    }
+
+    /// Those of both.
+    #[must_use]
+    pub const fn and(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Those that are not among others.
+    #[must_use]
+    pub const fn without(self, others: Self) -> Self {
+        Self(self.0 & !others.0)
+    }
+
+    /// The warnings, in the order of [`OriginWarning::ALL`].
+    pub fn iter(self) -> impl Iterator<Item = OriginWarning> {
+        OriginWarning::ALL.into_iter().filter(move |warning| self.contains(*warning))
+    }
+}
+
+impl FromIterator<OriginWarning> for OriginWarnings {
+    fn from_iter<I: IntoIterator<Item = OriginWarning>>(warnings: I) -> Self {
+        Self(warnings.into_iter().fold(0, |bits, warning| bits | warning.bit()))
+    }
+}
+
+impl fmt::Display for OriginWarnings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.iter().enumerate().try_for_each(|(index, warning)| {
+            let separator = if index == 0 { "" } else { " " };
+            write!(f, "{separator}{}", warning.code())
+        })
+    }
+}
