@@ -55,9 +55,9 @@ pub(crate) struct InteractingHypotheses<const N: usize> {
     series: InnovationSeries<LARGEST>,
     /// Factor of the variance of a pose by the most probable hypothesis.
     pub(super) shaking: f64,
-    leads: bool,
+    pub(super) leads: bool,
     /// Whether a turn that the outline does not show is told by the path of the centroid, as whoever asks for a constant generator wants it.
-    turn_is_of_path: bool,
+    pub(super) turn_is_of_path: bool,
     /// Whether wrong poses have moved the outline: others than a constant generator have led, or the motion has changed.
     pub(super) outline_has_moved: bool,
 }
@@ -138,25 +138,6 @@ impl<const N: usize> InteractingHypotheses<N> {
         self.common.renew(&CommonError::of_outline(self.model, &covariance, &measured, &reference), &reference);
     }
 
-    /// Lets the path of the centroid tell what the outline does not show of the rates, from a prior that is as wide as steps of so many seconds
-    /// allow.
-    fn add_turn_of_path(&mut self, null: &[NullDirection], seconds: f64) {
-        let (from, k) = (self.reference.about_centroid(self.model), self.model.parameter_count());
-        (self.turn_is_of_path, self.leads) = (true, true);
-        for NullDirection { direction, .. } in null {
-            let direction = from * SVector::<f64, MAX_PARAMETERS>::from(*direction);
-            let largest = (0..k - 2).map(|i| direction[i].abs()).fold(0.0, f64::max);
-            if largest > 0.0 {
-                let unit = tuning::LARGEST_STEP_OF_PATH / (seconds * largest);
-                for hypothesis in &mut self.hypotheses {
-                    for (i, j) in (0..k).flat_map(|i| (0..k).map(move |j| (i, j))) {
-                        hypothesis.covariance[(k + i, k + j)] += direction[i] * direction[j] * unit * unit;
-                    }
-                }
-            }
-        }
-    }
-
     /// Begins to reckon with a steady change where the motion is constant: from the beginning, and after it has been seen to change.
     fn reckon_with_change(&mut self, seconds: f64) {
         let DynamicsWeights { generator, velocity, .. } = self.weights();
@@ -209,21 +190,8 @@ impl<const N: usize> InteractingHypotheses<N> {
         possible
     }
 
-    /// Projects the null directions of the reference pose out of all hypotheses.
-    fn hold(&mut self, null: &[NullDirection]) {
-        let Some(to) = self.reference.about_origin(self.model).filter(|_| !null.is_empty()) else { return };
-        let (from, k) = (self.reference.about_centroid(self.model), self.model.parameter_count());
-        for NullDirection { direction, dual } in null {
-            let direction = from * SVector::<f64, MAX_PARAMETERS>::from(*direction);
-            let dual = to.transpose() * SVector::<f64, MAX_PARAMETERS>::from(*dual);
-            let short =
-                |v: &SVector<f64, MAX_PARAMETERS>| CentredVector::from_fn(|i, _| if i < k { v[i] } else { 0.0 });
-            self.all().for_each(|hypothesis| hypothesis.hold(&short(&direction), &short(&dual)));
-        }
-    }
-
     /// All that are moved on, those without a weight too.
-    fn all(&mut self) -> impl Iterator<Item = &mut Hypothesis<N>> {
+    pub(super) fn all(&mut self) -> impl Iterator<Item = &mut Hypothesis<N>> {
         let arrived = self.arrivals.iter_mut().map(|arrival| &mut arrival.state);
         self.hypotheses
             .iter_mut()

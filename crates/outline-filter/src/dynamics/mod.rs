@@ -18,6 +18,7 @@ mod hypothesis;
 mod innovations;
 mod interacting;
 mod mixing;
+mod null_motions;
 mod perspective;
 mod probabilities;
 mod setting;
