@@ -44,8 +44,8 @@ impl LabelChoice {
     pub(crate) fn note(self) -> Option<String> {
         match self {
             Self::Labels(Some(LabelEvidence { labels, .. })) => Some(format!(
-                "label masks: each of the {labels} values seen is an object, by its number (--objects labels; --light takes what is lighter than a \
-                 threshold instead)"
+                "label masks: every value but 0 is an object, by its number ({labels} in the pictures looked at; --objects labels; --light takes what \
+                 is lighter than a threshold instead)"
             )),
             Self::Maybe(LabelEvidence { labels, .. }) => Some(format!(
                 "the pictures have flat areas of {labels} grey values, as label masks have: --objects labels takes each value for an object"

@@ -8,9 +8,9 @@ use std::thread::available_parallelism;
 
 use freeform_drawing::{MeaningOfB, candidate_sheet};
 use freeform_motion::outline_io::{
-    Channel, LabelInParts, LabelPictures, OriginWarning, OutlineUncertainty, PictureError, PictureErrorKind,
-    PicturePreview, PictureSequence, PictureSettings, TraceSettings, TracedPicture, TracedPictures, TracingEvidence,
-    read_ahead,
+    Channel, LabelInParts, LabelLeftOut, LabelPictures, OriginWarning, OutlineUncertainty, PictureError,
+    PictureErrorKind, PicturePreview, PictureSequence, PictureSettings, TraceSettings, TracedPicture, TracedPictures,
+    TracingEvidence, read_ahead,
 };
 use freeform_motion::riccati::CameraScale;
 use freeform_motion::short;
@@ -217,6 +217,9 @@ impl PictureInput {
                 "frame {frame}, label {label}: the largest part, of {largest} pixels, is taken, and one of {next} pixels is not; give each object \
                  a label of its own"
             ));
+        }
+        if let Some(LabelLeftOut { frame, label, reason }) = self.traced.label_left_out() {
+            return Some(format!("frame {frame}, label {label}: no outline, while others have one: {reason}"));
         }
         let aspect = self.traced.better_pixel_aspect()?;
         let symptom = "the object keeps its shape as it turns only with pixels of another aspect";

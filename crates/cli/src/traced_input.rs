@@ -1,7 +1,7 @@
 //! Pictures as they are traced: by their grey values, or label by label.
 use freeform_motion::outline_io::{
-    LabelInParts, LabelPictures, PictureError, PictureSequence, TraceSettings, TracedPicture, TracedPictures,
-    TracingSummary,
+    LabelInParts, LabelLeftOut, LabelPictures, PictureError, PictureSequence, TraceSettings, TracedPicture,
+    TracedPictures, TracingSummary,
 };
 
 /// The pictures of an input, one after the other.
@@ -66,6 +66,14 @@ impl Traced {
         match self {
             Self::Greys(_) => None,
             Self::Labels(labels) => labels.in_parts(),
+        }
+    }
+
+    /// A label that no outline was found of, beside others.
+    pub(crate) fn label_left_out(&self) -> Option<&LabelLeftOut> {
+        match self {
+            Self::Greys(_) => None,
+            Self::Labels(labels) => labels.left_out(),
         }
     }
 }

@@ -15,47 +15,53 @@ const MOST_SCATTERED: f64 = 0.005;
 const ENOUGH_PIXELS: u64 = 4096;
 
 /// Share of the pixels at the sides of a picture that are ground.
-const LEAST_GROUND: f64 = 0.5;
+pub(crate) const LEAST_GROUND: f64 = 0.5;
 
 /// Labels are counted from 1: the largest is up to this, or up to so many times their number, as of some the objects have left.
 const LARGEST_NUMBER: i64 = 32;
 const LARGEST_PER_LABEL: i64 = 4;
 
-/// What speaks for it that pictures are label masks: their ground is 0, and other values fill areas of them.
+/// What speaks for it that pictures are label masks: their ground is 0, other values fill areas of them, and most pictures show two of them at least.
+/// A body whose grey value changes from picture to picture shows one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LabelEvidence {
     /// Different labels in the pictures that were looked at, two at least.
     pub labels: usize,
     /// Whether they are small numbers, as labels are and grey values hardly ever.
     pub are_numbers: bool,
-    /// Whether no two labels touch.
-    pub are_apart: bool,
     /// Whether every label borders on the ground with half of its edge or more: a mark on a body does not.
     pub are_on_ground: bool,
 }
 
 impl LabelEvidence {
-    /// Whether every label is an object beyond doubt: small numbers, or bodies of flat grey values that are apart.
+    /// Whether every label is an object beyond doubt: small numbers, none of which is a mark on a body. Flat grey values that are apart may be a body
+    /// and a time stamp.
     #[must_use]
     pub const fn is_convincing(&self) -> bool {
-        self.are_numbers || self.are_apart
+        self.are_numbers && self.are_on_ground
     }
 
     /// Looks at pictures; `None` where one of them is no label mask, or there are less than two labels.
     pub(crate) fn of(pictures: impl IntoIterator<Item = Option<LabelPicture>>) -> Option<Self> {
         let mut all: BTreeMap<i64, Border> = BTreeMap::new();
+        let (mut with_labels, mut with_several) = (0_usize, 0);
         for picture in pictures {
-            for (label, border) in borders(&picture?)? {
+            let found = borders(&picture?)?;
+            with_labels += usize::from(!found.is_empty());
+            with_several += usize::from(found.len() >= 2);
+            for (label, border) in found {
                 let known = all.entry(label).or_default();
                 known.on_ground += border.on_ground;
                 known.on_others += border.on_others;
             }
         }
+        if 2 * with_several <= with_labels {
+            return None;
+        }
         let largest = *all.last_key_value().filter(|_| all.len() >= 2)?.0;
         Some(Self {
             labels: all.len(),
             are_numbers: largest <= LARGEST_NUMBER || largest <= LARGEST_PER_LABEL * all.len() as i64,
-            are_apart: all.values().all(|border| border.on_others == 0),
             are_on_ground: all.values().all(|border| border.on_ground >= border.on_others),
         })
     }
@@ -79,6 +85,9 @@ struct Tally {
 
 /// The edges of every label of a picture; `None` where it is no label mask.
 fn borders(LabelPicture { width, height, labels }: &LabelPicture) -> Option<BTreeMap<i64, Border>> {
+    if labels.is_empty() {
+        return None;
+    }
     let at = |column: usize, row: usize| labels[row * width + column];
     let sides = (0..*width).flat_map(|column| [at(column, 0), at(column, height - 1)]);
     let sides = sides.chain((0..*height).flat_map(|row| [at(0, row), at(width - 1, row)]));
@@ -119,6 +128,10 @@ fn borders(LabelPicture { width, height, labels }: &LabelPicture) -> Option<BTre
         }
     }
     let is_scattered = |tally: &&Tally| tally.runs.iter().any(|runs| tally.pixels < SHORT_RUN * runs);
+    // An edge of a large body is a small share of its pixels, but has most of its values.
+    if 2 * tallies.values().filter(is_scattered).count() > tallies.len() {
+        return None;
+    }
     let all: u64 = tallies.values().map(|tally| tally.pixels).sum();
     let scattered: u64 = tallies.values().filter(is_scattered).map(|tally| tally.pixels).sum();
     if scattered as f64 > MOST_SCATTERED * all as f64 {
@@ -133,5 +146,50 @@ impl Border {
             0 => self.on_ground += 1,
             _ => self.on_others += 1,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn picture(width: usize, height: usize, label: impl Fn(usize, usize) -> i64) -> Option<LabelPicture> {
+        let labels = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
+        Some(LabelPicture { width, height, labels: labels.map(|(column, row)| label(column, row)).collect() })
+    }
+
+    /// Two squares of these values.
+    fn squares([left, right]: [i64; 2]) -> Option<LabelPicture> {
+        picture(60, 40, |column, row| match (column, (10..30).contains(&row)) {
+            (5..25, true) => left,
+            (30..50, true) => right,
+            _ => 0,
+        })
+    }
+
+    #[test]
+    fn small_numbers_that_are_seen_together_are_labels_beyond_doubt_and_large_ones_are_not() {
+        let convincing =
+            |labels| LabelEvidence::of([squares(labels), squares(labels)]).map(|found| found.is_convincing());
+        assert_eq!(convincing([1, 2]), Some(true));
+        assert_eq!(convincing([128, 255]), Some(false));
+        assert_eq!(convincing([7, 7]), None);
+        // Each picture shows one of them.
+        assert_eq!(LabelEvidence::of([squares([1, 1]), squares([2, 2])]), None);
+    }
+
+    #[test]
+    fn the_smoothed_edge_of_a_large_body_is_no_label_mask() {
+        let disc = |column: usize, row: usize| {
+            let from_middle = (column as f64 - 500.3).hypot(row as f64 - 500.7);
+            (255.0 * (480.5 - from_middle).clamp(0.0, 1.0)) as i64
+        };
+        assert_eq!(LabelEvidence::of([picture(1000, 1000, disc)]), None);
+    }
+
+    #[test]
+    fn a_picture_without_pixels_is_no_label_mask() {
+        assert_eq!(LabelEvidence::of([picture(0, 0, |_, _| 0)]), None);
+        assert_eq!(LabelEvidence::of([picture(0, 5, |_, _| 0)]), None);
     }
 }

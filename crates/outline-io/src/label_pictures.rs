@@ -3,9 +3,10 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use image::{DynamicImage, GrayImage};
+use image::{DynamicImage, GenericImageView as _, GrayImage};
 
 use crate::frame::OutlineFrame;
+use crate::label_evidence::LEAST_GROUND;
 use crate::labels::{LabelMask, TracedLabel};
 use crate::picture::read_picture_colours;
 use crate::picture_error::{PictureError, PictureErrorKind, TraceError};
@@ -37,6 +38,18 @@ impl LabelPicture {
     pub(crate) fn read(path: &Path) -> Result<Self, PictureError> {
         let not_labels = || PictureError::of_file(path.display().to_string(), PictureErrorKind::NotLabels);
         read_picture_colours(path).and_then(|picture| Self::of(&picture).ok_or_else(not_labels))
+    }
+
+    /// Of a picture that may be a label mask by its edge: nothing is taken from others, which may be large.
+    pub(crate) fn read_if_dark_around(path: &Path) -> Option<Self> {
+        let picture = read_picture_colours(path).ok()?;
+        let (width, height) = picture.dimensions();
+        let is_dark = |x: u32, y: u32| picture.get_pixel(x, y).0[..3] == [0; 3];
+        let across = (0..width).flat_map(|x| [(x, 0), (x, height.saturating_sub(1))]);
+        let along = (0..height).flat_map(|y| [(0, y), (width.saturating_sub(1), y)]);
+        let dark = across.chain(along).filter(|(x, y)| *x < width && *y < height && is_dark(*x, *y)).count();
+        (dark as f64 >= LEAST_GROUND * (2 * (u64::from(width) + u64::from(height))) as f64).then_some(())?;
+        Self::of(&picture)
     }
 
     /// The grey values, or the numbers of colours that label masks are painted with; nothing of other pictures.
@@ -75,9 +88,15 @@ fn labels_of_colours(picture: &DynamicImage) -> Option<Vec<i64>> {
     if pixels.iter().any(|[.., alpha]| *alpha < u8::MAX) {
         return None;
     }
-    if pixels.iter().all(|[red, green, blue, _]| red == green && green == blue) {
-        return Some(pixels.iter().map(|[grey, ..]| i64::from(*grey)).collect());
-    }
+    // Some colours of the palette are grey, and may be all that a picture of it shows.
+    labels_of_palette(pixels).or_else(|| {
+        let are_grey = pixels.iter().all(|[red, green, blue, _]| red == green && green == blue);
+        are_grey.then(|| pixels.iter().map(|[grey, ..]| i64::from(*grey)).collect())
+    })
+}
+
+/// The numbers of colours that all are of the palette.
+fn labels_of_palette(pixels: &[[u8; 4]]) -> Option<Vec<i64>> {
     let numbers: BTreeMap<[u8; 3], i64> = (0..256).map(|number| (palette_colour(number), number)).collect();
     let mut latest = ([0; 3], 0);
     let number = |[red, green, blue, _]: &[u8; 4]| {
@@ -108,6 +127,18 @@ pub struct LabelPictures {
     trace: TraceSettings,
     summary: TracingSummary,
     in_parts: Option<LabelInParts>,
+    left_out: Option<LabelLeftOut>,
+}
+
+/// A label that no outline was found of, beside others.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LabelLeftOut {
+    /// Number of the picture.
+    pub frame: u64,
+    /// The label.
+    pub label: i64,
+    /// What is wrong with it.
+    pub reason: String,
 }
 
 /// A label in several parts, of which the largest is taken.
@@ -131,7 +162,7 @@ impl LabelPictures {
     pub fn new(files: Vec<PathBuf>, frames_per_second: Option<f64>, trace: TraceSettings) -> Result<Self, TraceError> {
         trace.check()?;
         let rate = frames_per_second.unwrap_or(DEFAULT_RATE);
-        Ok(Self { files, next: 0, rate, trace, summary: TracingSummary::default(), in_parts: None })
+        Ok(Self { files, next: 0, rate, trace, summary: TracingSummary::default(), in_parts: None, left_out: None })
     }
 
     /// Number of pictures.
@@ -156,6 +187,12 @@ impl LabelPictures {
     #[must_use]
     pub const fn in_parts(&self) -> Option<LabelInParts> {
         self.in_parts
+    }
+
+    /// The first label of the masks so far that no outline was found of, beside others.
+    #[must_use]
+    pub const fn left_out(&self) -> Option<&LabelLeftOut> {
+        self.left_out.as_ref()
     }
 
     fn read(&mut self, path: &Path) -> Result<LabelPicture, PictureError> {
@@ -187,13 +224,17 @@ impl LabelPictures {
                     }
                     outlines.push(OutlineFrame { frame, time, object: label.to_string(), outline: traced.outline });
                 }
-                Err(error) => refused = refused.or(Some(error)),
+                Err(error) => refused = refused.or(Some((label, error))),
             }
         }
         match refused {
-            _ if !outlines.is_empty() => Ok(outlines),
-            Some(error) => Err(error),
-            None => Err(TraceError::Uniform { value: 0 }),
+            Some((_, error)) if outlines.is_empty() => Err(error),
+            None if outlines.is_empty() => Err(TraceError::Uniform { value: 0 }),
+            refused => {
+                let left_out = refused.map(|(label, error)| LabelLeftOut { frame, label, reason: error.to_string() });
+                self.left_out = self.left_out.take().or(left_out);
+                Ok(outlines)
+            }
         }
     }
 }

@@ -141,7 +141,7 @@ pub use ground_picture::ground_picture;
 pub use identity::{Identities, Selection};
 pub use image::GrayImage;
 pub use label_evidence::LabelEvidence;
-pub use label_pictures::{LabelInParts, LabelPictures};
+pub use label_pictures::{LabelInParts, LabelLeftOut, LabelPictures};
 pub use labelme_files::labelme_files;
 pub use labels::{LabelMask, TracedLabel};
 pub use margins::Margins;

@@ -52,18 +52,19 @@ fn omegas(document: &Value) -> Vec<(String, f64)> {
 
 #[test]
 fn every_label_of_masks_of_8_and_16_bits_is_an_object_by_its_number() {
-    for (bits, labels) in [
-        (8, &[1, 2][..]),
-        (8, &[1, 20]),
-        (8, &[3, 2, 1]),
-        (8, &[85, 170, 255]),
-        (16, &[1, 2]),
-        (16, &[1, 20, 3]),
-        (16, &[300, 7, 1000]),
+    const ASKED: &str = "--objects labels";
+    for (bits, labels, options) in [
+        (8, &[1, 2][..], ""),
+        (8, &[1, 20], ""),
+        (8, &[3, 2, 1], ""),
+        (8, &[85, 170, 255], ASKED),
+        (16, &[1, 2], ""),
+        (16, &[1, 20, 3], ""),
+        (16, &[300, 7, 1000], ASKED),
     ] {
         let folder = tempfile::tempdir().expect("a folder");
         write_masks(folder.path(), bits, labels);
-        let found = omegas(&identified(folder.path(), ""));
+        let found = omegas(&identified(folder.path(), options));
         assert_eq!(found.len(), labels.len(), "{bits} bits, {labels:?}: {found:?}");
         for (label, (truth, ..)) in labels.iter().zip(BODIES) {
             let (_, omega) = found.iter().find(|(name, _)| *name == label.to_string()).expect("the label");
@@ -89,7 +90,11 @@ fn that_labels_are_objects_is_said_with_the_option_that_says_it_and_the_one_that
     write_masks(folder.path(), 8, &[1, 2, 3]);
     let input = folder.path().display();
     let chosen = run(&format!("outline {input} --fps 25"), "");
-    assert!(stderr(&chosen).contains("each of the 3 values seen is an object"), "{}", stderr(&chosen));
+    assert!(
+        stderr(&chosen).contains("every value but 0 is an object, by its number (3 in the pictures looked at"),
+        "{}",
+        stderr(&chosen)
+    );
     let asked = run(&format!("outline {input} --fps 25 --objects labels"), "");
     assert_eq!((stdout(&asked), stderr(&asked)), (stdout(&chosen), String::new()));
     let lighter = omegas(&identified(folder.path(), "--light --threshold 2.5"));
@@ -114,6 +119,49 @@ fn a_label_that_is_missing_for_some_frames_keeps_its_name_and_is_not_looked_for(
         objects.iter().find(|object| object["object"] == name).and_then(|object| object["frames"].as_u64())
     };
     assert_eq!((frames("4"), frames("9")), (Some(20), Some(17)));
+}
+
+#[test]
+fn a_body_whose_value_changes_from_picture_to_picture_is_one_object() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let value = |x, y, frame: u32| u8::from(body(x, y, frame) == Some(0)) * (170 + 4 * frame as u8);
+    write(folder.path(), |frame| GrayImage::from_fn(SIZE[0], SIZE[1], |x, y| Luma([value(x, y, frame)])).into());
+    let found = omegas(&identified(folder.path(), ""));
+    assert!(matches!(found[..], [(_, omega)] if (omega - 1.2).abs() < 0.05), "{found:?}");
+}
+
+#[test]
+fn a_mark_on_a_body_in_colours_of_the_palette_of_label_masks_is_no_label() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let is_mark = |x: u32, y: u32, frame: u32| {
+        let [across, up] = [(8, 0), (0, 8)].map(|(dx, dy)| [x + dx, x - dx, y + dy, y - dy]);
+        body(across[0], y, frame).is_some()
+            && body(across[1], y, frame).is_some()
+            && body(x, up[2], frame).is_some()
+            && body(x, up[3], frame).is_some()
+    };
+    let colour = |x: u32, y: u32, frame: u32| match body(x, y, frame) {
+        Some(0) if is_mark(x, y, frame) => Rgb([128, 0, 0]),
+        Some(0) => Rgb([128, 128, 0]),
+        _ => Rgb([0; 3]),
+    };
+    write(folder.path(), |frame| RgbImage::from_fn(SIZE[0], SIZE[1], |x, y| colour(x, y, frame)).into());
+    let output = run(&format!("identify {} --fps 25 --json", folder.path().display()), "");
+    assert!(!stderr(&output).contains("label masks"), "{}", stderr(&output));
+}
+
+#[test]
+fn a_label_too_small_for_an_outline_is_told_of() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let value = |x: u32, y: u32, frame| match body(x, y, frame) {
+        Some(0) => 1,
+        Some(1) => 2,
+        // Six pixels wide and high.
+        _ => 3 * u8::from((120..126).contains(&x) && (150..156).contains(&y)),
+    };
+    write(folder.path(), |frame| GrayImage::from_fn(SIZE[0], SIZE[1], |x, y| Luma([value(x, y, frame)])).into());
+    let told = stderr(&run(&format!("outline {} --fps 25", folder.path().display()), ""));
+    assert!(told.contains("frame 0, label 3: no outline, while others have one"), "{told}");
 }
 
 #[test]
