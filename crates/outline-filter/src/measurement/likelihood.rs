@@ -235,7 +235,10 @@ impl View<'_> {
         let Frame { columns, deviations, pieces, .. } = frame;
         let ratios = deviations.ratios();
         let ratio = move |i: usize| ratios.map_or(1.0, |ratios| ratios[i]);
-        let of_piece = |piece: &Piece| std::iter::repeat_n(self.lies_apart(frame, piece), piece.range().len());
+        // A pose in which no piece shows any of the outline explains nothing.
+        let is_shown = pieces.iter().any(|piece| !self.lies_apart(frame, piece));
+        let of_piece =
+            move |piece: &Piece| std::iter::repeat_n(is_shown && self.lies_apart(frame, piece), piece.range().len());
         let points = columns.points().zip(pieces.iter().flat_map(of_piece)).enumerate();
         points.map(move |(i, (point, lies_apart))| match lies_apart {
             true => None,
