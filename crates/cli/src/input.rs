@@ -215,6 +215,15 @@ impl Input {
         }
     }
 
+    /// Whether the outlines come from a table that says of its outlines how they were found.
+    pub(crate) fn has_warning_column(&self) -> bool {
+        match &self.source {
+            Source::Csv(outlines) => outlines.has_warning_column(),
+            Source::File(outlines) | Source::Polygons(outlines) => outlines.has_warning_column(),
+            Source::Pictures(_) => false,
+        }
+    }
+
     /// What may be wrong with how its outlines were found, as far as that is known, with the codes.
     pub(crate) fn origin_warnings(&self) -> Vec<(OriginWarning, String)> {
         let mut warnings: Vec<_> =
@@ -233,7 +242,7 @@ impl Input {
     }
 
     /// What a table has said so far of how its outlines were found.
-    fn told_by_table(&self) -> OriginWarnings {
+    pub(crate) fn told_by_table(&self) -> OriginWarnings {
         match &self.source {
             Source::Csv(outlines) => outlines.warnings(),
             Source::File(outlines) | Source::Polygons(outlines) => outlines.warnings(),
@@ -270,9 +279,11 @@ impl Input {
     }
 
     /// Says how pictures are traced, if that was chosen, and what may be wrong with the input.
-    pub(crate) fn tell(&self) {
+    pub(crate) fn tell(&mut self) {
         self.pictures().map(PictureInput::notes).unwrap_or_default().iter().for_each(|told| note(told));
         self.origin_warnings().iter().for_each(|(_, warning)| warn(warning));
+        // Rows that had to be ordered have all been read.
+        self.told = self.told.and(self.told_by_table());
         self.pictures().and_then(PictureInput::not_drawn).iter().for_each(|warning| warn(warning));
     }
 

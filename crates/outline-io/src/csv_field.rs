@@ -38,12 +38,15 @@ pub(crate) fn seconds(field: &[u8]) -> Result<f64, ReadErrorKind> {
     })
 }
 
-/// Whether a text is like `10:00:01.5` or `2024-05-01`: it begins with a digit and has two numbers with a colon, or three with hyphens or slashes
-/// between.
+/// Whether a text is like `10:00:01.5`, `2024-05-01` or `5.1.2024 10:00`: two numbers with a colon between, or three with hyphens, slashes or points.
 fn is_clock_or_date(text: &str) -> bool {
+    const MARKS: [char; 3] = ['-', '/', '.'];
     let of_digits = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
-    let date = text.get(..text.len().min(10)).unwrap_or_default();
-    let is_date = ['-', '/'].iter().any(|mark| date.split(*mark).filter(|part| of_digits(part)).count() == 3);
+    let end = text.find(|character: char| !character.is_ascii_digit() && !MARKS.contains(&character));
+    let date = &text[..end.unwrap_or(text.len())];
+    // Three digits are of thousands.
+    let is_of_date = |part: &str| of_digits(part) && matches!(part.len(), 1 | 2 | 4);
+    let is_date = MARKS.iter().any(|mark| date.split(*mark).count() == 3 && date.split(*mark).all(is_of_date));
     is_date || text.split(':').take(2).filter(|part| of_digits(part)).count() == 2
 }
 
@@ -169,6 +172,18 @@ mod tests {
         let points = vec![Point2::origin(), Point2::new(corner, 0.0), Point2::new(0.0, corner)];
         assert!(Outline::closed(points).is_ok());
         assert!(number(b"1.0000001e100").is_err());
+    }
+
+    #[test]
+    fn dates_and_times_of_day_are_told_from_what_is_no_number_otherwise() {
+        let is_told = |text: &str| matches!(seconds(text.as_bytes()), Err(ReadErrorKind::NotSeconds { .. }));
+        for text in ["5.1.2024 10:00", "05.01.24", "5/1/2024", "2024-05-01T10:00:00Z", "2024-05-01_10:00", "10:00:01.5"]
+        {
+            assert!(is_told(text), "{text}");
+        }
+        for text in ["1.2.3.4", "1.234.567", "1-2", "..", "a:b", "x5.1.2024", "1.5 s"] {
+            assert!(!is_told(text), "{text}");
+        }
     }
 
     #[test]

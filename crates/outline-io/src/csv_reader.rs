@@ -99,6 +99,12 @@ impl<R: Read> OutlineReader<R> {
         self.columns.deviation.is_some()
     }
 
+    /// Whether the header has the column `warning`, and once.
+    #[must_use]
+    pub const fn has_warning_column(&self) -> bool {
+        self.columns.warning.is_some()
+    }
+
     /// What the rows read so far say of how their outlines were found, in the column `warning`.
     #[must_use]
     pub const fn warnings(&self) -> OriginWarnings {

@@ -26,9 +26,12 @@ pub struct WriterOptions {
     /// Round coordinates to this share of the RMS radius of the first outline or better, and times to a nanosecond;
     /// `None` for all digits.
     pub resolution: Option<f64>,
-    /// Write these into the column `warning`, which is there only if there are any.
+    /// Write these into the column `warning`, which is there if there are any.
     #[cfg_attr(feature = "serde", serde(default))]
     pub warnings: OriginWarnings,
+    /// Write the `warning` column though nothing is known yet: needed where [`OutlineWriter::warn`] may tell of warnings later.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub warning_column: bool,
 }
 
 impl WriterOptions {
@@ -42,6 +45,11 @@ impl WriterOptions {
             deviation_column: options.deviation_column || frame.outline.deviations().is_some(),
             ..options
         })
+    }
+
+    /// Whether there is a column `warning`.
+    pub(crate) const fn has_warning_column(&self) -> bool {
+        self.warning_column || !self.warnings.is_empty()
     }
 
     /// Refuses what the columns cannot hold or would not be read back.
@@ -73,7 +81,7 @@ pub struct OutlineWriter<W: Write> {
     writer: csv::Writer<W>,
     options: WriterOptions,
     rounding: Rounding,
-    /// Those of the options as text.
+    /// Those known so far as text.
     warnings: String,
     /// Holds one number as text.
     text: Vec<u8>,
@@ -91,11 +99,19 @@ impl<W: Write> OutlineWriter<W> {
         let arc = options.arc_column.then_some(Column::Arc);
         let contour = options.contour_column.then_some(Column::Contour);
         let deviation = options.deviation_column.then_some(Column::Deviation);
-        let warning = (!options.warnings.is_empty()).then_some(Column::Warning);
+        let warning = options.has_warning_column().then_some(Column::Warning);
         let optional = object.into_iter().chain(arc).chain(contour).chain(deviation).chain(warning);
         writer.write_record(required.chain(optional).map(|column| column.name())).map_err(io_error)?;
         let rounding = Rounding::to_share(options.resolution);
         Ok(Self { writer, options, rounding, warnings: options.warnings.to_string(), text: Vec::new() })
+    }
+
+    /// Writes these warnings too into the rows to come. Without the column `warning`, which the options ask for, they are not written.
+    pub fn warn(&mut self, warnings: OriginWarnings) {
+        if self.options.has_warning_column() && !warnings.without(self.options.warnings).is_empty() {
+            self.options.warnings = self.options.warnings.and(warnings);
+            self.warnings = self.options.warnings.to_string();
+        }
     }
 
     /// Writes one outline.
@@ -134,7 +150,7 @@ impl<W: Write> OutlineWriter<W> {
                         None => self.writer.write_field("").map_err(io_error)?,
                     }
                 }
-                if !self.warnings.is_empty() {
+                if self.options.has_warning_column() {
                     self.writer.write_field(&self.warnings).map_err(io_error)?;
                 }
                 self.writer.write_record(None::<&[u8]>).map_err(io_error)?;

@@ -4,11 +4,13 @@ const CONVERT: &str = "convert pictures to PNG, such as with ImageMagick: mogrif
 const ARRAY: &str =
     "save masks as PNG or TIFF, one picture a file, or give the array to freeform_motion.identify in Python";
 
-/// Beginnings of files, of six bytes at most, the names of their formats, and advice.
-const KNOWN: [(&[u8], &str, &str); 9] = [
+/// Beginnings of files, of ten bytes at most, the names of their formats, and advice.
+const KNOWN: [(&[u8], &str, &str); 10] = [
     (b"\x93NUMPY", "a NumPy array", ARRAY),
     (b"\x89HDF\r\n", "HDF5", ARRAY),
-    (b"MATLAB", "a MATLAB file", ARRAY),
+    // With the version, since a column may be called so.
+    (b"MATLAB 5.0", "a MATLAB file", ARRAY),
+    (b"MATLAB 7.3", "a MATLAB file", ARRAY),
     (b"\x80\x02", "a Python pickle", ARRAY),
     (b"\x80\x03", "a Python pickle", ARRAY),
     (b"\x80\x04", "a Python pickle", ARRAY),

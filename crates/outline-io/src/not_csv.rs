@@ -3,7 +3,10 @@ use crate::error::ReadErrorKind;
 use crate::foreign_format::foreign_format;
 
 /// Bytes at the beginning of a file that tell.
-pub(crate) const HEAD_LENGTH: u64 = 6;
+pub(crate) const HEAD_LENGTH: u64 = 10;
+
+/// Bytes of three characters of UTF-16.
+const THREE_CHARACTERS: usize = 6;
 
 /// Beginnings of compressed files, their names and what unpacks them.
 const COMPRESSED: [(&[u8], &str, &str); 5] = [
@@ -23,8 +26,8 @@ pub(crate) fn not_csv(start: &[u8], name: &str) -> Option<ReadErrorKind> {
         return Some(ReadErrorKind::ParquetStream);
     }
     // Without a mark: a header of plain letters with a zero beside each.
-    let zeros: Vec<bool> = start.iter().map(|byte| *byte == 0).collect();
-    if start.len() as u64 == HEAD_LENGTH && zeros[0] != zeros[1] && zeros.iter().skip(2).eq(zeros.iter().take(4)) {
+    let zeros: Vec<bool> = start.iter().take(THREE_CHARACTERS).map(|byte| *byte == 0).collect();
+    if zeros.len() == THREE_CHARACTERS && zeros[0] != zeros[1] && zeros.iter().skip(2).eq(zeros.iter().take(4)) {
         return Some(ReadErrorKind::Utf16);
     }
     if let Some((format, advice)) = foreign_format(start, name) {

@@ -44,6 +44,7 @@ impl OriginWarning {
         }
     }
 
+    /// Its place in saved sets: the variants are numbered in the order in which they are declared, so a new one is declared last.
     const fn bit(self) -> u8 {
         1 << self as u8
     }
@@ -89,7 +90,18 @@ impl From<TracingWarning> for OriginWarning {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "u8"))]
 pub struct OriginWarnings(u8);
+
+#[cfg(feature = "serde")]
+impl From<u8> for OriginWarnings {
+    /// From the bits as they are saved, one for each variant of [`OriginWarning`] in the order of their declaration. Others are left out: they
+    /// would be neither none nor any.
+    fn from(bits: u8) -> Self {
+        let known = OriginWarning::ALL.into_iter().collect::<Self>();
+        Self(bits & known.0)
+    }
+}
 
 impl OriginWarnings {
     /// None at all.

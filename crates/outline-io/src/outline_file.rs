@@ -72,6 +72,15 @@ impl<W: Write> TableWriter<W> {
         }
     }
 
+    /// Writes these warnings too into the rows to come, as [`OutlineWriter::warn`] does.
+    pub fn warn(&mut self, warnings: OriginWarnings) {
+        match &mut self.0 {
+            Kind::Csv(writer) => writer.warn(warnings),
+            #[cfg(feature = "parquet")]
+            Kind::Parquet(writer) => writer.warn(warnings),
+        }
+    }
+
     /// Writes one outline.
     ///
     /// # Errors
@@ -205,6 +214,16 @@ impl OutlineFile {
     #[must_use]
     pub fn has_deviation_column(&self) -> bool {
         self.has_deviation_column
+    }
+
+    /// Whether the file has a column `warning`; polygons have none.
+    #[must_use]
+    pub const fn has_warning_column(&self) -> bool {
+        match &self.outlines {
+            #[cfg(feature = "parquet")]
+            Outlines::Parquet(reader) => reader.has_warning_column(),
+            Outlines::Polygons(_) => false,
+        }
     }
 
     /// What the rows read so far say of how their outlines were found, in the column `warning`; polygons say nothing.

@@ -105,6 +105,12 @@ impl ParquetReader {
         self.table.columns.deviation.is_some()
     }
 
+    /// Whether the file has the column `warning`, with one value in a row.
+    #[must_use]
+    pub const fn has_warning_column(&self) -> bool {
+        self.table.columns.warning.is_some()
+    }
+
     /// What the rows read so far say of how their outlines were found, in the column `warning`: text, one for each row.
     #[must_use]
     pub const fn warnings(&self) -> OriginWarnings {

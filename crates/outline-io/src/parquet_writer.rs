@@ -13,6 +13,7 @@ use parquet::schema::parser::parse_message_type;
 
 use crate::csv_writer::WriterOptions;
 use crate::frame::OutlineFrame;
+use crate::origin_warning::OriginWarnings;
 use crate::parquet_table::COMMENTS;
 use crate::rounding::Rounding;
 use crate::write_error::WriteError;
@@ -35,6 +36,8 @@ pub struct ParquetWriter<W> {
     file: SerializedFileWriter<Vec<u8>>,
     options: WriterOptions,
     rounding: Rounding,
+    /// Those known so far as text.
+    warnings: ByteArray,
     rows: Rows,
 }
 
@@ -57,6 +60,7 @@ struct Rows {
     arc: OptionalLists<i32>,
     contour: OptionalLists<i32>,
     deviation: OptionalLists<f64>,
+    warning: Vec<ByteArray>,
 }
 
 /// A value for every point, such as the piece that it belongs to: a list per row, or null.
@@ -107,7 +111,7 @@ impl<W: Write> ParquetWriter<W> {
         columns.extend(options.arc_column.then(|| list("arc", "OPTIONAL", "INT32")));
         columns.extend(options.contour_column.then(|| list("contour", "OPTIONAL", "INT32")));
         columns.extend(options.deviation_column.then(|| list("deviation", "OPTIONAL", "DOUBLE")));
-        columns.extend((!options.warnings.is_empty()).then(|| "REQUIRED BYTE_ARRAY warning (STRING);".to_owned()));
+        columns.extend(options.has_warning_column().then(|| "REQUIRED BYTE_ARRAY warning (STRING);".to_owned()));
         let schema = parse_message_type(&format!("message outlines {{ {} }}", columns.join(" "))).map_err(failed)?;
         let comments = KeyValue::new(COMMENTS.to_owned(), comments.join("\n"));
         let properties = WriterProperties::builder()
@@ -125,7 +129,16 @@ impl<W: Write> ParquetWriter<W> {
             .build();
         let file = SerializedFileWriter::new(Vec::new(), Arc::new(schema), Arc::new(properties)).map_err(failed)?;
         let rounding = Rounding::to_share(options.resolution);
-        Ok(Self { sink, file, options, rounding, rows: Rows::default() })
+        let warnings = options.warnings.to_string().as_str().into();
+        Ok(Self { sink, file, options, rounding, warnings, rows: Rows::default() })
+    }
+
+    /// Writes these warnings too into the rows to come, as [`OutlineWriter::warn`](crate::OutlineWriter::warn) does.
+    pub fn warn(&mut self, warnings: OriginWarnings) {
+        if self.options.has_warning_column() && !warnings.without(self.options.warnings).is_empty() {
+            self.options.warnings = self.options.warnings.and(warnings);
+            self.warnings = self.options.warnings.to_string().as_str().into();
+        }
     }
 
     /// Writes one outline.
@@ -160,6 +173,9 @@ impl<W: Write> ParquetWriter<W> {
         }
         if self.options.deviation_column {
             rows.deviation.push(frame.outline.deviations());
+        }
+        if self.options.has_warning_column() {
+            rows.warning.push(self.warnings.clone());
         }
         if rows.x.len() >= GROUP_POINTS || rows.frame.len() >= GROUP_ROWS {
             self.write_group()?;
@@ -199,9 +215,8 @@ impl<W: Write> ParquetWriter<W> {
             let OptionalLists { values, definition, repetition } = &rows.deviation;
             column::<DoubleType>(&mut group, values, Some((definition, repetition)))?;
         }
-        if !self.options.warnings.is_empty() {
-            let warnings = ByteArray::from(self.options.warnings.to_string().as_str());
-            column::<ByteArrayType>(&mut group, &vec![warnings; rows.frame.len()], None)?;
+        if self.options.has_warning_column() {
+            column::<ByteArrayType>(&mut group, &rows.warning, None)?;
         }
         group.close().map_err(failed)?;
         self.pass_on()

@@ -28,7 +28,8 @@ impl PyParameter {
         self.inner.name
     }
 
-    /// Unit: `rad/s`, `1/s`, or `px/s` for b of masks whose pixels have the size 1; in other units of length `1/s` is lengths per second.
+    /// Unit: `rad/s`, `1/s`, or for b of masks whose pixels have the size 1, as `identify` gives it, `px/s` (with a pixel aspect
+    /// `pixel heights/s`); in other units of length, and in observations, `1/s` is lengths per second.
     #[getter]
     fn unit(&self) -> &'static str {
         self.of.unit_of(&self.inner)

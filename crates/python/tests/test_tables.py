@@ -382,7 +382,12 @@ def test_progress_counts_every_frame(table, monkeypatch):
 @pytest.mark.parametrize("library", LIBRARIES.values(), ids=LIBRARIES)
 def test_what_a_table_says_of_how_its_outlines_were_found_is_warned_of_and_in_the_results(table, library):
     told = np.full(len(table["frame"]), "tracing_doubtful rate_assumed")
-    for use in (ff.identify, ff.track):
+    known = {"plane": ff.simulate("plane").true_outline()}
+
+    def recognise(data):
+        return ff.recognise(data, known)
+
+    for use in (ff.identify, ff.track, recognise):
         with pytest.warns(UserWarning) as heard:
             results = use(library({**table, "warning": told}))
         messages = [str(warning.message) for warning in heard]

@@ -225,9 +225,14 @@ impl<'a> Outcome<'a> {
         written.and_then(|()| sink.flush()).map_err(|error| sink.failure(&error))
     }
 
-    /// Whether a parameter of any object is not stated, for whatever reason.
+    /// Whether a parameter, or the velocity of the middle, of any object is not stated for another reason than that the outlines do not show it, as
+    /// a circle does not show its turn.
     fn lacks_values(&self) -> bool {
-        self.results.iter().any(|result| !result.unstated().is_empty())
+        self.results.iter().any(|result| {
+            let mut reasons =
+                result.unstated().into_iter().map(|(_, reason)| reason).chain(result.velocity_not_stated());
+            reasons.any(|reason| reason != NotStated::Unobservable)
+        })
     }
 
     /// Whether a parameter of any object is not known at the end that may have been known before.

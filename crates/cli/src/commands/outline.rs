@@ -27,7 +27,8 @@ pub(crate) fn run(args: &OutlineArgs) -> Result<(), Failure> {
     // A pipe that nobody reads is waited for here, which the first signal ends.
     let mut sink = Sink::open(&args.output)?;
     let verbosity = Verbosity::of_flag(args.quiet);
-    let input = Input::open(&args.inputs, &args.pictures, Waiting::UntilInterrupted, verbosity)?.with_corners_alone();
+    let mut input =
+        Input::open(&args.inputs, &args.pictures, Waiting::UntilInterrupted, verbosity)?.with_corners_alone();
     if !input.has_pictures() && args.overlay.is_some() {
         return Err(Failure::unusable(format_args!("{}: not a picture, there is nothing to draw on", input.name)));
     }
@@ -73,10 +74,9 @@ fn trace_all(args: &OutlineArgs, mut input: Input, sink: &mut Sink) -> Result<Tr
         match item? {
             Item::Outline(frame, source) => {
                 if !std::mem::replace(&mut is_begun, true) {
-                    // A table that is copied says it in its rows.
                     table.options.warnings = input.origin_warnings().into_iter().map(|(warning, _)| warning).collect();
                 }
-                table.write(&frame)?;
+                table.write(&frame, input.told_by_table())?;
                 if let (Some(drawings), Some(source)) = (&mut drawings, &source) {
                     drawings.draw(source, &frame)?;
                 }
@@ -123,16 +123,20 @@ impl<'a> Table<'a> {
             deviation_column: args.deviations || input.has_deviation_column(),
             resolution: None,
             warnings: OriginWarnings::NONE,
+            // A table that is copied says it in its rows, which may be later ones than the first.
+            warning_column: input.has_warning_column(),
         };
         let (format, comments) = (TableFormat::of(&args.output), std::mem::take(&mut input.comments));
         Self { sink: Some(sink), writer: None, format, options, comments, outlines: 0 }
     }
 
-    fn write(&mut self, frame: &OutlineFrame) -> Result<(), WriteError> {
+    /// Writes an outline, with what is known by now of how all were found.
+    fn write(&mut self, frame: &OutlineFrame, warnings: OriginWarnings) -> Result<(), WriteError> {
         if let Some(sink) = self.sink.take() {
             self.writer = Some(TableWriter::new(sink, self.format, self.options, &self.comments)?);
         }
         if let Some(writer) = &mut self.writer {
+            writer.warn(warnings);
             writer.write(frame)?;
         }
         self.outlines += 1;

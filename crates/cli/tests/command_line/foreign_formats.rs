@@ -20,6 +20,10 @@ fn files_of_other_kinds_are_named_with_what_to_do() {
             b"frame,time,x,y\n0,2024-05-01T10:00:00Z,1,2\n",
             "dates.csv:2: column time: \"2024-05-01T10:00:00Z\" is a date or a time of day",
         ),
+        ("german.csv", b"frame,time,x,y\n0,5.1.2024 10:00,1,2\n", "is a date or a time of day: give seconds"),
+        // A column of a table may be called as a format is.
+        ("columns.csv", b"MATLAB_id,frame,time,x\n0,0,0,1\n", "columns.csv:1: missing column(s) y"),
+        ("masks73.mat", b"MATLAB 7.3 MAT-file", "a MATLAB file: save masks as PNG"),
         ("clock.csv", b"frame,time,x,y\n0,10:00:01.5,1,2\n", "is a date or a time of day: give seconds"),
     ] {
         let path = file(folder.path(), name, content);
@@ -86,7 +90,9 @@ fn polygons_by_their_corners_alone_are_told_why_nothing_is_stated() {
     assert!(of_four.contains("along the sides of a polygon too") && of_four.lines().count() == 1, "{of_four}");
     let of_ten = told(&star, 1);
     assert!(of_ten.contains("every outline has 10 points") && of_ten.contains("along the sides too"), "{of_ten}");
-    for along in [told(&quadrilateral, 20), told(&star, 10)] {
+    // Points along the sides of a circle would not show its turn either.
+    let circle: Vec<_> = (0..20_u8).map(|i| (f64::from(i) / 20.0 * std::f64::consts::TAU).sin_cos()).collect();
+    for along in [told(&quadrilateral, 20), told(&star, 10), told(&circle, 1)] {
         assert!(!along.contains("along the sides"), "{along}");
     }
 }

@@ -1,6 +1,7 @@
 //! What is wrong with how outlines were found goes with them in their table.
 use std::path::Path;
 
+use freeform_motion::outline_io::{OriginWarning, OutlineReader, TableFormat, TableWriter, WriterOptions};
 use image::{GrayImage, Luma};
 
 use crate::support::{json, run, stderr, stdout, succeed};
@@ -40,16 +41,67 @@ fn a_table_of_outlines_says_what_is_wrong_with_their_pictures_to_everything_that
         assert_eq!(codes(&document), ["tracing_doubtful", "rate_assumed"], "{document}");
         assert_eq!(codes(&document), codes(&of_pictures));
         assert_eq!(codes(&document["objects"][0]), codes(&of_pictures["objects"][0]), "{document}");
-        let copy = format!("{table}-copy.csv");
-        run(&format!("outline {table} --output {copy} --quiet"), "");
-        for command in ["identify", "track", "fit", "outline"] {
-            let told = stderr(&run(&format!("{command} {copy}"), ""));
-            let message = "no way of tracing tells an object from the ground beyond doubt";
-            assert_eq!(told.matches(message).count(), 1, "{command} {name}: {told}");
+        for copy in ["copy.csv", "copy.parquet"].map(|copy| format!("{table}-{copy}")) {
+            run(&format!("outline {table} --output {copy} --quiet"), "");
+            for command in ["identify", "track", "fit", "outline"] {
+                let told = stderr(&run(&format!("{command} {copy}"), ""));
+                let message = "no way of tracing tells an object from the ground beyond doubt";
+                assert_eq!(told.matches(message).count(), 1, "{command} {copy}: {told}");
+            }
         }
         let report = format!("{table}.html");
         succeed(&format!("identify {table} --report {report} --quiet"), "");
         assert!(std::fs::read_to_string(report).expect("a report").contains("column warning: tracing_doubtful"));
+    }
+}
+
+/// Rows of a disc that moves, of which the table says something.
+fn disc(object: &str, frames: impl Iterator<Item = u32>, told: &str) -> String {
+    let point = |frame: u32, i: u32| {
+        let (y, x) = (f64::from(i) / 40.0 * std::f64::consts::TAU).sin_cos();
+        let time = f64::from(frame) / 10.0;
+        format!("{object},{frame},{time},{},{y},{told}\n", 2.0 * x + time)
+    };
+    frames.flat_map(|frame| (0..40).map(move |i| point(frame, i))).collect()
+}
+
+#[test]
+fn a_copy_of_joined_tables_says_what_only_the_later_rows_say() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let place = |name: &str| folder.path().join(name).display().to_string();
+    // More rows of Parquet than are read at once come before.
+    let rows = disc("a", 0..80, "") + &disc("b", 0..80, "tracing_doubtful rate_assumed");
+    std::fs::write(place("joined.csv"), format!("object,frame,time,x,y,warning\n{rows}")).expect("a table");
+    for (of, copy) in [
+        ("joined.csv", "copy.csv"),
+        ("joined.csv", "copy.parquet"),
+        ("copy.parquet", "again.csv"),
+        ("copy.parquet", "again.parquet"),
+    ] {
+        succeed(&format!("outline {} --output {} --quiet", place(of), place(copy)), "");
+        let document = json(&stdout(&run(&format!("identify {} --json", place(copy)), "")));
+        assert_eq!(codes(&document), ["tracing_doubtful", "rate_assumed"], "{of} {copy}: {document}");
+    }
+    let copied = std::fs::read_to_string(place("copy.csv")).expect("a table");
+    let count = |end: &str| copied.lines().filter(|row| row.ends_with(end)).count();
+    assert!(count(",tracing_doubtful rate_assumed") >= 80 * 40 && count(",") >= 79 * 40, "{copied}");
+}
+
+#[test]
+fn rows_of_parquet_that_have_to_be_ordered_are_told_of_once() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let table = folder.path().join("table.parquet");
+    let rows = "object,frame,time,x,y\n".to_owned() + &disc("a", 0..8, "").replace(",\n", "\n");
+    let frames: Result<Vec<_>, _> = OutlineReader::new(rows.as_bytes(), "rows").expect("a header").collect();
+    let warnings = [OriginWarning::TracingDoubtful].into_iter().collect();
+    let options = WriterOptions { object_column: true, warnings, ..WriterOptions::default() };
+    let file = std::fs::File::create(&table).expect("a file");
+    let mut writer = TableWriter::new(file, TableFormat::Parquet, options, &[]).expect("a table");
+    frames.expect("outlines").iter().rev().for_each(|frame| writer.write(frame).expect("the columns are there"));
+    writer.finish().expect("a table");
+    for command in ["identify", "track", "fit", "outline"] {
+        let told = stderr(&run(&format!("{command} {}", table.display()), ""));
+        assert_eq!(told.matches("column warning: tracing_doubtful").count(), 1, "{command}: {told}");
     }
 }
 

@@ -248,8 +248,10 @@ impl StandingEdges {
         let is_shown = |StandingEdge { from, to, since, until }: &StandingEdge| {
             [from.x, from.y, to.x, to.y, *since, until.unwrap_or(0.0)].iter().all(|x| x.is_finite())
         };
+        let is_over = |edge: &StandingEdge| is_shown(edge) && edge.until.is_some_and(|until| until >= edge.since);
         let is_edge = |edge: &Edge| {
             is_shown(&edge.shown)
+                && edge.shown.until.is_none()
                 && !edge.sightings.is_empty()
                 && are_sightings(&edge.sightings)
                 && edge.path.is_valid()
@@ -264,7 +266,7 @@ impl StandingEdges {
             && self.edges.len() <= MOST_EDGES
             && self.edges.iter().all(is_edge)
             && self.former.len() <= MOST_EDGES
-            && self.former.iter().all(is_shown)
+            && self.former.iter().all(is_over)
     }
 }
 
@@ -303,8 +305,11 @@ mod tests {
     #[test]
     fn damaged_edges_are_not_valid() {
         assert!(with_edge().is_valid(1000));
-        let damages: [(&str, Damage); 17] = [
+        let damages: [(&str, Damage); 20] = [
             ("dropped at no time", |e| e.former[0].until = Some(f64::NAN)),
+            ("dropped and not over", |e| e.former[0].until = None),
+            ("dropped before it was found", |e| e.former[0].until = Some(e.former[0].since - 0.1)),
+            ("over and not dropped", |e| e.edges[0].shown.until = Some(0.4)),
             ("noise without end", |e| e.sightings[0].noise = f64::INFINITY),
             ("a reach that is no number", |e| e.sightings[0].reach[1] = f64::NAN),
             ("a reach the wrong way round", |e| e.sightings[0].reach = [0.5, -0.4]),

@@ -1,5 +1,7 @@
 //! The column `warning` of tables.
-use freeform_outline_io::{OriginWarning, OriginWarnings, OutlineReader, OutlineWriter, ParquetReader, WriterOptions};
+use freeform_outline_io::{
+    OriginWarning, OriginWarnings, OutlineReader, OutlineWriter, ParquetReader, ParquetWriter, WriterOptions,
+};
 
 use crate::parquet::{expected, parquet_of, read};
 
@@ -44,4 +46,44 @@ fn a_warning_in_one_row_is_heard_and_words_of_other_programs_say_nothing() {
     assert!(heard("not tracing_doubtfully").is_empty() && heard("").is_empty());
     let twice = "frame,time,x,y,warning,warning\n0,0,0,0,a,b\n0,0,1,0,a,b\n0,0,0,1,a,b\n";
     assert_eq!(OutlineReader::new(twice.as_bytes(), "test").expect("a header").flatten().count(), 1);
+}
+
+#[test]
+fn warnings_that_become_known_later_are_in_the_later_rows_where_the_column_is_there() {
+    let doubtful: OriginWarnings = [OriginWarning::TracingDoubtful].into_iter().collect();
+    let options = WriterOptions { object_column: true, warning_column: true, ..WriterOptions::default() };
+    let csv = |options: WriterOptions| {
+        let mut writer = OutlineWriter::new(Vec::new(), options).expect("memory");
+        for frame in &expected() {
+            writer.warn(if frame.frame == 6 { doubtful } else { OriginWarnings::NONE });
+            writer.write(frame).expect("the columns are there");
+        }
+        String::from_utf8(writer.finish().expect("memory")).expect("text")
+    };
+    let rows = csv(options);
+    let ends = |end: &str| rows.lines().filter(|row| row.ends_with(end)).count();
+    assert_eq!([ends(",warning"), ends(","), ends(",tracing_doubtful")], [1, 7, 4], "{rows}");
+    let without = csv(WriterOptions { warning_column: false, ..options });
+    assert!(!without.contains("warning") && !without.contains("doubtful"), "{without}");
+    assert!(OutlineReader::new(without.as_bytes(), "test").expect("a header").all(|frame| frame.is_ok()));
+    for (warns, expected_warnings) in [(true, doubtful), (false, OriginWarnings::NONE)] {
+        let mut writer = ParquetWriter::new(Vec::new(), options, &[]).expect("memory");
+        for frame in &expected() {
+            writer.warn(if warns && frame.frame == 6 { doubtful } else { OriginWarnings::NONE });
+            writer.write(frame).expect("the columns are there");
+        }
+        let bytes = writer.finish().expect("memory");
+        let mut reader = ParquetReader::from_bytes(bytes, "test").expect("a table");
+        assert!(reader.has_warning_column());
+        assert_eq!((reader.by_ref().count(), reader.warnings()), (expected().len(), expected_warnings));
+    }
+}
+
+#[cfg(feature = "serde")]
+#[test]
+fn unknown_bits_of_saved_warnings_are_left_out() {
+    let all: OriginWarnings = OriginWarning::ALL.into_iter().collect();
+    let read = |text: &str| serde_json::from_str::<OriginWarnings>(text).expect("a set");
+    assert_eq!((read("255"), read("192"), read("1")), (all, OriginWarnings::NONE, read("129")));
+    assert_eq!(read(&serde_json::to_string(&all).expect("a set")), all);
 }

@@ -86,15 +86,15 @@ def outlines(
     array = label_array(labels)
     found, refused, in_parts = tracer.trace(0, array)
     if in_parts is not None:
-        _warn(in_parts.partition(", ")[2])
+        warn_caller(in_parts.partition(", ")[2])
     if (ground := ground_label(array)) is not None:
-        _warn(_GROUND.format(f"label {ground}"))
+        warn_caller(_GROUND.format(f"label {ground}"))
     if refused:
         raise ValueError(refused[0][1].partition(", ")[2])
     return dict(found)
 
 
-def _warn(message: str) -> None:
+def warn_caller(message: str) -> None:
     """Warns where this package was called."""
     frame, level = sys._getframe(1), 2
     while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
@@ -173,7 +173,7 @@ def traced(
     def tell(kind: str, message: str) -> None:
         if kind not in told:
             told.add(kind)
-            _warn(message)
+            warn_caller(message)
 
     with progress_bar(progress, len(masks) if isinstance(masks, Sized) else None) as advance:
         for frame, mask in enumerate(masks):
@@ -191,4 +191,4 @@ def traced(
             if advance is not None:
                 advance(1)
     if objects == 0:
-        _warn(f"there is no object in any of {frames} mask(s)")
+        warn_caller(f"there is no object in any of {frames} mask(s)")

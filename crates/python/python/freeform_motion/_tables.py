@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -11,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._lists import Lists, are_lists, library_of, mark_lists, merged, number_lists, rows_of
+from ._masks import warn_caller
 from ._native import Outline, ResultWarning, Simulation, origin_warnings
 from ._times import frame_rate
 
@@ -71,7 +71,7 @@ def read_table(
         texts = [value for value in factorise(table[name])[1] if isinstance(value, str)]
     told = origin_warnings(texts)
     for warning in told:
-        warnings.warn(f"the table says of its outlines: {warning.message} (column {name}: {warning.code})", stacklevel=3)
+        warn_caller(f"the table says of its outlines: {warning.message} (column {name}: {warning.code})")
     return native, told
 
 
