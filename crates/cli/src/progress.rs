@@ -3,6 +3,8 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::failure::warn;
+
 /// Whether standard output is a terminal: a bar would stand in the lines that are printed there meanwhile, and they show how
 /// far the work has come.
 pub(crate) fn would_stand_in_output() -> bool {
@@ -76,6 +78,11 @@ impl Progress {
         if let Some(bar) = &self.bar {
             bar.inc(1);
         }
+    }
+
+    /// Warns of all of these.
+    pub(crate) fn warn_of(&self, told: &[String]) {
+        told.iter().for_each(|told| self.pause(|| warn(told)));
     }
 
     /// Lets something be printed on the terminal.

@@ -106,7 +106,7 @@ impl Iterator for Reader<'_> {
         // What came after Ctrl-C may be cut short.
         let item = self.input.next().filter(|_| !interrupt::was_asked_for())?;
         if !self.verbosity.is_quiet() {
-            self.input.news().iter().for_each(|told| self.progress.pause(|| warn(told)));
+            self.progress.warn_of(&self.input.news());
         }
         match item {
             Ok(item) => Some(item),

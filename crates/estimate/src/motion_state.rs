@@ -197,15 +197,12 @@ impl MotionState {
         // A perspective that is not seen, such as that of an ellipse, puts another point of the body there.
         let size = self.radius * g.fixed_view::<2, 2>(0, 0).norm();
         let by_unseen_perspective = if is_perspective_hidden { size } else { 0.0 };
-        let velocities = self.model.parameter_kinds().iter().zip(self.hidden);
-        let mut of_velocities =
-            velocities.filter(|(kind, _)| **kind == ParameterKind::Velocity).map(|(_, hidden)| hidden);
-        let is_position_hidden = [0, 1].map(|_| of_velocities.next().unwrap_or(false));
+        let velocity = self.model.parameter_kinds().iter().position(|kind| *kind == ParameterKind::Velocity);
         for (name, row, start) in [("x", 0, self.origin.x), ("y", 1, self.origin.y)] {
             let mut at = entry(name, row, 2, self.radius);
             at.value += start;
             at.standard_deviation = at.standard_deviation.hypot(by_unseen_turn).hypot(by_unseen_perspective);
-            if is_position_hidden[row] {
+            if velocity.is_some_and(|first| self.hidden[first + row]) {
                 (at.value, at.standard_deviation) = (f64::NAN, f64::INFINITY);
             }
             list.push(at);

@@ -52,6 +52,15 @@ impl WriterOptions {
         self.warning_column || !self.warnings.is_empty()
     }
 
+    /// Adds warnings that rows to come are to have; whether there is a column for them, and any was not among them.
+    pub(crate) fn add_warnings(&mut self, warnings: OriginWarnings) -> bool {
+        let is_new = self.has_warning_column() && !warnings.without(self.warnings).is_empty();
+        if is_new {
+            self.warnings = self.warnings.and(warnings);
+        }
+        is_new
+    }
+
     /// Refuses what the columns cannot hold or would not be read back.
     pub(crate) fn check(&self, frame: &OutlineFrame) -> Result<(), WriteError> {
         let OutlineFrame { object, time, .. } = frame;
@@ -108,8 +117,7 @@ impl<W: Write> OutlineWriter<W> {
 
     /// Writes these warnings too into the rows to come. Without the column `warning`, which the options ask for, they are not written.
     pub fn warn(&mut self, warnings: OriginWarnings) {
-        if self.options.has_warning_column() && !warnings.without(self.options.warnings).is_empty() {
-            self.options.warnings = self.options.warnings.and(warnings);
+        if self.options.add_warnings(warnings) {
             self.warnings = self.options.warnings.to_string();
         }
     }

@@ -2,20 +2,14 @@
 use std::collections::BTreeMap;
 
 use crate::label_pictures::LabelPicture;
-
-/// Pixels of a value over its runs along rows or columns, below which it is scattered: the grey values of smoothed edges and of noise are, labels
-/// are not.
-const SHORT_RUN: u64 = 2;
+use crate::labels::SHORT_RUN;
 
 /// Share of the pixels beside the ground that may have scattered values: labels may be slivers where they leave the picture. Of a smoothed body of
 /// 300 pixels across a hundredth lies on its edge.
 const MOST_SCATTERED: f64 = 0.005;
 
 /// Pixels by which noise is told from labels.
-const ENOUGH_PIXELS: u64 = 4096;
-
-/// Share of the pixels at the sides of a picture that are ground.
-pub(crate) const LEAST_GROUND: f64 = 0.5;
+const ENOUGH_PIXELS: usize = 4096;
 
 /// Labels are counted from 1: the largest is up to this, or up to so many times their number, as of some the objects have left.
 const LARGEST_NUMBER: i64 = 32;
@@ -77,9 +71,9 @@ struct Border {
 /// How the pixels of a value lie.
 #[derive(Debug, Clone, Copy, Default)]
 struct Tally {
-    pixels: u64,
+    pixels: usize,
     /// Runs along rows, and along columns.
-    runs: [u64; 2],
+    runs: [usize; 2],
     border: Border,
 }
 
@@ -89,12 +83,6 @@ fn borders(LabelPicture { width, height, labels }: &LabelPicture) -> Option<BTre
         return None;
     }
     let at = |column: usize, row: usize| labels[row * width + column];
-    let sides = (0..*width).flat_map(|column| [at(column, 0), at(column, height - 1)]);
-    let sides = sides.chain((0..*height).flat_map(|row| [at(0, row), at(width - 1, row)]));
-    let ground = sides.filter(|label| *label == 0).count();
-    if (ground as f64) < LEAST_GROUND * (2 * (width + height)) as f64 {
-        return None;
-    }
     let mut tallies: BTreeMap<i64, Tally> = BTreeMap::new();
     let (mut pixels, mut runs) = (0, 0);
     for (row, line) in labels.chunks_exact(*width).enumerate() {
@@ -103,16 +91,16 @@ fn borders(LabelPicture { width, height, labels }: &LabelPicture) -> Option<BTre
             let label = run[0];
             if label > 0 {
                 let tally = tallies.entry(label).or_default();
-                tally.pixels += run.len() as u64;
+                tally.pixels += run.len();
                 tally.runs[0] += 1;
-                pixels += run.len() as u64;
+                pixels += run.len();
                 runs += 1;
                 let beside = [column.checked_sub(1), Some(column + run.len()).filter(|end| end < width)];
                 beside.into_iter().flatten().for_each(|other| tally.border.meets(at(other, row)));
                 for column in column..column + run.len() {
                     let above = row.checked_sub(1).map(|row| at(column, row));
                     let below = Some(row + 1).filter(|row| row < height).map(|row| at(column, row));
-                    tally.runs[1] += u64::from(above != Some(label));
+                    tally.runs[1] += usize::from(above != Some(label));
                     [above, below]
                         .into_iter()
                         .flatten()
@@ -132,8 +120,8 @@ fn borders(LabelPicture { width, height, labels }: &LabelPicture) -> Option<BTre
     if 2 * tallies.values().filter(is_scattered).count() > tallies.len() {
         return None;
     }
-    let all: u64 = tallies.values().map(|tally| tally.pixels).sum();
-    let scattered: u64 = tallies.values().filter(is_scattered).map(|tally| tally.pixels).sum();
+    let all: usize = tallies.values().map(|tally| tally.pixels).sum();
+    let scattered: usize = tallies.values().filter(is_scattered).map(|tally| tally.pixels).sum();
     if scattered as f64 > MOST_SCATTERED * all as f64 {
         return None;
     }

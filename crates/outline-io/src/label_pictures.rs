@@ -6,16 +6,16 @@ use std::sync::Arc;
 use image::{DynamicImage, GenericImageView as _, GrayImage};
 
 use crate::frame::OutlineFrame;
-use crate::label_evidence::LEAST_GROUND;
 use crate::labels::{LabelMask, TracedLabel};
 use crate::picture::read_picture_colours;
 use crate::picture_error::{PictureError, PictureErrorKind, TraceError};
+use crate::picture_sequence::DEFAULT_RATE;
 use crate::source_picture::SourcePicture;
 use crate::trace_settings::TraceSettings;
 use crate::traced_pictures::{TracedPicture, TracingSummary};
 
-/// Frames per second where none are given.
-const DEFAULT_RATE: f64 = 30.0;
+/// Share of the pixels at the sides of a label mask that are ground.
+const LEAST_GROUND: f64 = 0.5;
 
 /// Share of the largest part of a label from which on the next largest is told of.
 const LIKE_AN_OBJECT: f64 = 0.25;
@@ -40,16 +40,20 @@ impl LabelPicture {
         read_picture_colours(path).and_then(|picture| Self::of(&picture).ok_or_else(not_labels))
     }
 
-    /// Of a picture that may be a label mask by its edge: nothing is taken from others, which may be large.
-    pub(crate) fn read_if_dark_around(path: &Path) -> Option<Self> {
+    /// Of a picture that has ground around it, as label masks have: nothing is taken from others, which may be large.
+    pub(crate) fn read_with_ground_around(path: &Path) -> Option<Self> {
         let picture = read_picture_colours(path).ok()?;
         let (width, height) = picture.dimensions();
-        let is_dark = |x: u32, y: u32| picture.get_pixel(x, y).0[..3] == [0; 3];
+        // Of 16 bits the eight that are shown say too little.
+        let is_ground = |x: u32, y: u32| match &picture {
+            DynamicImage::ImageLuma16(grey) => grey.get_pixel(x, y).0 == [0],
+            _ => picture.get_pixel(x, y).0[..3] == [0; 3],
+        };
         let across = (0..width).flat_map(|x| [(x, 0), (x, height.saturating_sub(1))]);
         let along = (0..height).flat_map(|y| [(0, y), (width.saturating_sub(1), y)]);
-        let dark = across.chain(along).filter(|(x, y)| *x < width && *y < height && is_dark(*x, *y)).count();
-        (dark as f64 >= LEAST_GROUND * (2 * (u64::from(width) + u64::from(height))) as f64).then_some(())?;
-        Self::of(&picture)
+        let ground = across.chain(along).filter(|(x, y)| *x < width && *y < height && is_ground(*x, *y)).count();
+        let is_around = ground as f64 >= LEAST_GROUND * (2 * (u64::from(width) + u64::from(height))) as f64;
+        if is_around { Self::of(&picture) } else { None }
     }
 
     /// The grey values, or the numbers of colours that label masks are painted with; nothing of other pictures.
@@ -202,11 +206,8 @@ impl LabelPictures {
             return Err(failed(PictureErrorKind::NotAFile));
         }
         let picture = LabelPicture::read(path)?;
-        let (width, height) = (picture.width as u32, picture.height as u32);
-        let (first_width, first_height) = *self.summary.size.get_or_insert((width, height));
-        if (width, height) != (first_width, first_height) {
-            return Err(failed(PictureErrorKind::SizeChanged { width, height, first_width, first_height }));
-        }
+        let size = (picture.width as u32, picture.height as u32);
+        PictureErrorKind::check_size(&mut self.summary.size, size).map_err(failed)?;
         Ok(picture)
     }
 

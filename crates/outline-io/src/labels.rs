@@ -14,7 +14,7 @@ const SET: u8 = 255;
 /// Labels of a mask from which on grey values are suspected, and the mean length of their runs in pixels below which most of them have to
 /// be. Grey values change from pixel to pixel, at a smoothed edge or in noise; labels of objects do not.
 const MANY_LABELS: usize = 16;
-const SHORT_RUN: usize = 2;
+pub(crate) const SHORT_RUN: usize = 2;
 
 /// A labelled mask, as segmentation programs give it: every pixel holds the label of the object that it belongs to, 0 or less for the
 /// ground.

@@ -135,8 +135,7 @@ impl<W: Write> ParquetWriter<W> {
 
     /// Writes these warnings too into the rows to come, as [`OutlineWriter::warn`](crate::OutlineWriter::warn) does.
     pub fn warn(&mut self, warnings: OriginWarnings) {
-        if self.options.has_warning_column() && !warnings.without(self.options.warnings).is_empty() {
-            self.options.warnings = self.options.warnings.and(warnings);
+        if self.options.add_warnings(warnings) {
             self.warnings = self.options.warnings.to_string().as_str().into();
         }
     }

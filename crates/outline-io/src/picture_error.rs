@@ -158,6 +158,17 @@ pub enum PictureErrorKind {
     Damaged(#[source] ImageError),
 }
 
+impl PictureErrorKind {
+    /// Refuses a picture of other columns and rows than the first, which sets them.
+    pub(crate) fn check_size(first: &mut Option<(u32, u32)>, (width, height): (u32, u32)) -> Result<(), Self> {
+        let (first_width, first_height) = *first.get_or_insert((width, height));
+        if (width, height) != (first_width, first_height) {
+            return Err(Self::SizeChanged { width, height, first_width, first_height });
+        }
+        Ok(())
+    }
+}
+
 /// Why no outline could be traced in a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum TraceError {

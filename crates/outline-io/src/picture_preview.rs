@@ -179,7 +179,7 @@ impl PicturePreview {
     /// What speaks for it that the pictures are label masks, by some of them; `None` where they are none.
     #[must_use]
     pub fn label_evidence(&self) -> Option<LabelEvidence> {
-        LabelEvidence::of(self.some_files(LABELS_LOOKED_AT)?.map(|path| LabelPicture::read_if_dark_around(path)))
+        LabelEvidence::of(self.some_files(LABELS_LOOKED_AT)?.map(|path| LabelPicture::read_with_ground_around(path)))
     }
 
     /// Difference from the ground, in grey values, by which the bodies of drawn pictures are told from it where these settings, which compare with no

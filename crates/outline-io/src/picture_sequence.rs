@@ -16,7 +16,7 @@ use crate::picture_files::{MAGIC_LENGTH, beginning, has_picture_extension, pictu
 use crate::y4m::{MAGIC, VideoReader};
 
 /// Frames per second where neither the settings nor the file tell.
-const DEFAULT_RATE: f64 = 30.0;
+pub(crate) const DEFAULT_RATE: f64 = 30.0;
 
 /// Longest picture or animation read from a stream, in bytes.
 const STREAM_LIMIT: u64 = 1 << 30;
@@ -287,13 +287,10 @@ impl PictureSequence {
 
     /// Refuses a picture of another size than the first.
     fn checked(&mut self, frame: PictureFrame, in_file: Option<u64>) -> Result<PictureFrame, PictureError> {
-        let (width, height) = frame.picture.dimensions();
-        let (first_width, first_height) = *self.size.get_or_insert((width, height));
-        if (width, height) != (first_width, first_height) {
-            let kind = PictureErrorKind::SizeChanged { width, height, first_width, first_height };
-            return Err(PictureError { file: frame.file, frame: in_file, kind });
+        match PictureErrorKind::check_size(&mut self.size, frame.picture.dimensions()) {
+            Ok(()) => Ok(frame),
+            Err(kind) => Err(PictureError { file: frame.file, frame: in_file, kind }),
         }
-        Ok(frame)
     }
 }
 

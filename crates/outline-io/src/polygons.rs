@@ -9,15 +9,13 @@ use crate::frame::OutlineFrame;
 use crate::labelme::{LabelmeFile, labelme_bodies};
 use crate::natural_order::natural_order;
 use crate::outline_rows::closed_outline;
+use crate::picture_sequence::DEFAULT_RATE;
 use crate::polygon_bodies::{Bodies, Body};
 use crate::polygon_error::PolygonError;
 use crate::trackmate::trackmate_bodies;
 
 /// Most bytes of a file of polygons, which is read as a whole.
 pub(crate) const FILE_LIMIT: u64 = 1 << 30;
-
-/// Frames per second where neither the settings nor the file tell.
-const DEFAULT_RATE: f64 = 30.0;
 
 /// Direction of the second coordinate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

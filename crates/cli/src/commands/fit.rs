@@ -73,7 +73,7 @@ fn fit_all(args: &FitArgs, mut input: Input, fitter: Fitter, sink: &mut Sink) ->
     let mut waiting = Batch { input: input.name.clone(), fitter, items: SideBySide::of(&input) };
     let mut fitted = Fitted::default();
     while let Some(item) = input.next() {
-        input.news().iter().for_each(|told| progress.pause(|| warn(told)));
+        progress.warn_of(&input.news());
         progress.advance();
         match item {
             Ok(Item::Outline(frame, _)) => {

@@ -64,7 +64,7 @@ fn trace_all(args: &OutlineArgs, mut input: Input, sink: &mut Sink) -> Result<Tr
     let mut warnings = MissingWarnings::default();
     while let Some(item) = input.next() {
         if !args.quiet {
-            input.news().iter().for_each(|told| progress.pause(|| warn(told)));
+            progress.warn_of(&input.news());
         }
         // What came after Ctrl-C may be cut short.
         if interrupt::was_asked_for() {

@@ -61,7 +61,7 @@ fn compare_all(mut input: Input, recogniser: &Recogniser, sink: &Sink) -> Compar
     let mut waiting = SideBySide::of(&input);
     let mut compared = Compared::default();
     while let Some(item) = input.next() {
-        input.news().iter().for_each(|told| progress.pause(|| warn(told)));
+        progress.warn_of(&input.news());
         progress.advance();
         match item {
             Ok(Item::Outline(frame, _)) => {
