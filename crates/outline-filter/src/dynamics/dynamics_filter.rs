@@ -98,6 +98,11 @@ impl DynamicsFilter {
         of_any_size!(self, hypotheses => hypotheses.of_outline_now(pose))
     }
 
+    /// Takes nothing to be known along directions that were not shown so far, after a step of so many seconds.
+    pub(crate) fn forget(&mut self, directions: &[NullDirection], seconds: f64) {
+        of_any_size!(self, hypotheses => hypotheses.forget(directions, seconds));
+    }
+
     /// Steps that the motion is known from, without a limit if it is constant.
     pub(crate) fn memory(&self) -> f64 {
         of_any_size!(self, hypotheses => hypotheses.memory())

@@ -50,7 +50,7 @@ pub(crate) struct InteractingHypotheses<const N: usize> {
     /// What the errors of all poses are taken from.
     pub(super) reference: CentredPose,
     /// Variance of a pose as one frame tells it.
-    pose_variance: CentredVector,
+    pub(super) pose_variance: CentredVector,
     pub(super) common: CommonError,
     series: InnovationSeries<LARGEST>,
     /// Factor of the variance of a pose by the most probable hypothesis.

@@ -1,7 +1,8 @@
 //! Null directions of an outline in one pose, in a place of their own size: they are asked for in every frame, which takes no memory from the heap.
 use std::{array, iter::Take, ops::Deref};
 
-use freeform_riccati::{MAX_PARAMETERS, ParameterVector};
+use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector};
+use nalgebra::Matrix3;
 
 /// A null direction in the image: Jacobians of measurements lose `(h . direction) dual`.
 #[derive(Debug, Clone, Copy, Default)]
@@ -15,6 +16,17 @@ impl NullDirection {
     pub(crate) fn project_out(&self, jacobian: &mut ParameterVector) {
         let along: f64 = jacobian.iter().zip(&self.direction).map(|(a, b)| a * b).sum();
         jacobian.iter_mut().zip(&self.dual).for_each(|(r, d)| *r -= along * d);
+    }
+
+    /// The direction in other coordinates, which a map takes those that it is in to.
+    pub(crate) fn moved(&self, model: MotionModel, (map, inverse): (&Matrix3<f64>, &Matrix3<f64>)) -> Self {
+        let (forth, back, k) = (model.adjoint(map, inverse), model.adjoint(inverse, map), model.parameter_count());
+        let mut moved = Self::default();
+        for i in 0..k {
+            moved.direction[i] = (0..k).map(|j| forth[i][j] * self.direction[j]).sum();
+            moved.dual[i] = (0..k).map(|j| self.dual[j] * back[j][i]).sum();
+        }
+        moved
     }
 
     /// Subtracts the part of a motion that is in this direction.

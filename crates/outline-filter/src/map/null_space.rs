@@ -1,13 +1,16 @@
 //! Null directions: directions of the pose that an outline does not show, such as the turning of a circle about its centre.
-use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterKind, ParameterVector, turn_rate};
-use nalgebra::{Matrix2, Matrix3, Point2, SMatrix, SVector, Vector2};
+use freeform_riccati::{MotionModel, ParameterKind, ParameterVector, turn_rate};
+use nalgebra::{Matrix2, Matrix3, Point2, Vector2};
 
 use super::{
     OutlineMap,
     centring::{Centring, NormalByNeighbours, Stretch},
+    first_cells::OfFirstCells,
+    levers::{Levers, SumOfSquares},
     local_fit::direction_variance,
-    null_directions::{NullDirection, NullDirections},
-    rest::{Rest, add_square, eigen_of_block},
+    null_directions::NullDirections,
+    rest::{Rest, eigen_of_block},
+    to_image::ToImage,
     turn_evidence::{TurnEvent, TurnEvidence},
 };
 use crate::tuning::{
@@ -31,6 +34,10 @@ pub(crate) fn map_between(linear: &Matrix2<f64>, from: &Vector2<f64>, to: &Vecto
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct NullSpace {
     pub(super) in_body: Vec<ParameterVector>,
+    /// What the cells which the map began with do not show.
+    pub(super) of_first_cells: Vec<OfFirstCells>,
+    /// Deviation of the noise that they were found with.
+    pub(super) sigma: f64,
     /// From centred coordinates of unit RMS radius to the body frame.
     pub(super) frame: Matrix3<f64>,
     pub(super) centroid: Point2<f64>,
@@ -49,6 +56,8 @@ impl Default for NullSpace {
     fn default() -> Self {
         Self {
             in_body: Vec::new(),
+            of_first_cells: Vec::new(),
+            sigma: 0.0,
             frame: Matrix3::identity(),
             centroid: Point2::origin(),
             stretch: None,
@@ -158,22 +167,10 @@ impl OutlineMap {
         let count = self.cells.len() as f64;
         let contours = self.closed_contours();
         let centring = Centring::of(&self.cells, model, sigma, Self::area_covariance(&contours));
-        let mut levers = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::zeros();
-        // What errors of the normals alone would make of the levers.
-        let mut levers_of_noise = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::zeros();
-        let mut of_cells = Vec::with_capacity(self.cells.len());
-        for (number, cell) in self.cells.iter().enumerate() {
-            let normal = self.normal_by_neighbours(number, sigma);
-            // A cell counts for the length of the outline that it stands for.
-            let count = count / centring.relative_length(&normal.direction);
-            let (normal, variance) = centring.normal(&normal);
-            let p = centring.centred(&cell.centre);
-            let velocities = |along| SVector::from(model.normal_velocities(&p, along));
-            let (across, along) = (velocities(&normal), velocities(&Vector2::new(-normal.y, normal.x)));
-            add_square(&mut levers, &across, count.recip(), k);
-            of_cells.push((across, count));
-            add_square(&mut levers_of_noise, &along, variance / count, k);
-        }
+        let all = self.levers_about(model, centring, sigma);
+        // A cell counts for the length of the outline that it stands for.
+        let sum = SumOfSquares::of(all.of_cells.iter().map(|lever| (lever, lever.length / count)), k);
+        let of_cells: Vec<_> = all.of_cells.iter().map(|lever| (lever.across.into(), count / lever.length)).collect();
         let of_places = self.levers_of_places(&contours, centring.spread());
         let noise = sigma / centring.spread();
         // Where the outline may be stretched, light that moves a hole looks like a stretch as well as like a turn.
@@ -182,12 +179,14 @@ impl OutlineMap {
         let of_normals = direction_variance(sigma / self.step, self.half_window);
         let needed = tuning::HARDLY_SHOWN.min(tuning::LEAST_LEVER_PER_NOISE * of_normals);
         let to_body = centring.to_body();
+        self.levers = Some(all);
         let space = &mut self.null_space;
+        space.sigma = sigma;
         space.in_body.clear();
         (space.weakest_turn, space.turn_without_most, space.turn_of_rest) = (f64::INFINITY, f64::INFINITY, None);
         let mut unseen: Vec<ParameterVector> = Vec::new();
-        for (value, vector) in eigen_of_block(&levers, k) {
-            let of_noise = (vector.transpose() * levers_of_noise * vector)[(0, 0)];
+        for (value, vector) in eigen_of_block(&sum.levers, k) {
+            let of_noise = (vector.transpose() * sum.of_noise * vector)[(0, 0)];
             let told = value - of_noise;
             let generator = model.generator(&vector.as_slice()[..k]);
             let mut is_shown = value >= tuning::DEGENERATE.max(tuning::EXPLAINED * of_noise);
@@ -226,6 +225,13 @@ impl OutlineMap {
         if self.null_space.turn == TurnEvidence::Refuted {
             self.hide_turn(model);
         }
+    }
+
+    /// The lever arms of all cells in centred coordinates; `sigma` is the deviation of their noise.
+    pub(super) fn levers_about(&self, model: MotionModel, centring: Centring, sigma: f64) -> Levers {
+        let cells = self.cells.iter().enumerate();
+        let cells = cells.map(|(number, cell)| (cell.centre, self.normal_by_neighbours(number, sigma)));
+        Levers::of(model, centring, cells, &self.null_space.of_first_cells)
     }
 
     /// Whether a turn is shown, but hardly.
@@ -295,32 +301,15 @@ impl OutlineMap {
         if space.in_body.is_empty() {
             return list;
         }
-        let k = model.parameter_count();
-        let Some(inverse) = pose.try_inverse() else { return list };
-        let (ad, ad_inverse) = (model.adjoint(pose, &inverse), model.adjoint(&inverse, pose));
         // Duals in centred coordinates, where the directions are orthonormal. What is taken off along a turn is all of the turn: noise of the
         // normals gives its centre a place of its own, and the object would be taken to turn as it travels.
-        let Some(from_body) = space.frame.try_inverse() else { return list };
-        let centring = model.adjoint(&from_body, &space.frame);
+        let Some(to_image) = ToImage::of(model, pose, &space.frame) else { return list };
         for u in &space.in_body {
-            let mut direction = [0.0; MAX_PARAMETERS];
-            let mut centred = [0.0; MAX_PARAMETERS];
-            for i in 0..k {
-                direction[i] = (0..k).map(|j| ad[i][j] * u[j]).sum();
-                centred[i] = (0..k).map(|j| centring[i][j] * u[j]).sum();
-            }
+            let mut centred = to_image.centred(u);
             if space.in_body.len() == 1 {
                 centred = of_its_rates(model, centred);
             }
-            let mut in_body = [0.0; MAX_PARAMETERS];
-            let mut dual = [0.0; MAX_PARAMETERS];
-            for j in 0..k {
-                in_body[j] = (0..k).map(|i| centred[i] * centring[i][j]).sum();
-            }
-            for j in 0..k {
-                dual[j] = (0..k).map(|i| in_body[i] * ad_inverse[i][j]).sum();
-            }
-            list.push(NullDirection { direction, dual });
+            list.push(to_image.direction(u, &centred));
         }
         list
     }

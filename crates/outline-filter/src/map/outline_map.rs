@@ -1,8 +1,10 @@
+#[cfg(feature = "serde")]
+use freeform_riccati::MotionModel;
 use nalgebra::{Matrix2, Point2, Vector2};
 
 #[cfg(feature = "serde")]
 use super::centring::Stretch;
-use super::{Contour, association::Bisectors, nearest_field::NearestField, null_space::NullSpace};
+use super::{Contour, association::Bisectors, levers::Levers, nearest_field::NearestField, null_space::NullSpace};
 use crate::tuning::map as tuning;
 
 /// A stretch of the outline in the body frame.
@@ -39,6 +41,9 @@ pub(crate) struct OutlineMap {
     /// Most places that a frame has shown at once.
     pub(super) most_seen: usize,
     pub(super) null_space: NullSpace,
+    /// Since null directions were found last.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(super) levers: Option<Levers>,
 }
 
 impl OutlineMap {
@@ -56,6 +61,7 @@ impl OutlineMap {
             step,
             most_seen: 0,
             null_space: NullSpace::default(),
+            levers: None,
         };
         (spacing > 0.0 && step > 0.0).then_some(map)
     }
@@ -178,7 +184,7 @@ impl Resolution {
 #[cfg(feature = "serde")]
 impl OutlineMap {
     /// Builds what is not saved; false where the map is none. Coordinates are normalised.
-    pub(crate) fn restore(&mut self) -> bool {
+    pub(crate) fn restore(&mut self, model: MotionModel) -> bool {
         let count = self.cells.len();
         let within = |value: &f64| value.abs() <= tuning::FARTHEST;
         let is_cell = |cell: &Cell| {
@@ -186,8 +192,18 @@ impl OutlineMap {
                 && (cell.normal.norm_squared() - 1.0).abs() < tuning::UNIT_NORMAL
                 && cell.neighbours.iter().all(|number| *number < count)
         };
-        let NullSpace { in_body, frame, centroid, stretch, weakest_turn, turn_without_most, turn_of_rest, turn: _ } =
-            &self.null_space;
+        let NullSpace {
+            in_body,
+            of_first_cells,
+            sigma,
+            frame,
+            centroid,
+            stretch,
+            weakest_turn,
+            turn_without_most,
+            turn_of_rest,
+            turn: _,
+        } = &self.null_space;
         let is_valid = (tuning::FEWEST_CELLS..=tuning::MOST_SAVED).contains(&count)
             && self.cells.iter().all(is_cell)
             && (1.0 / tuning::FARTHEST..=tuning::FARTHEST).contains(&self.spacing)
@@ -196,6 +212,8 @@ impl OutlineMap {
             && self.most_seen <= tuning::MOST_SAVED
             && in_body.len() <= freeform_riccati::MAX_PARAMETERS
             && stretch.as_ref().is_none_or(Stretch::is_valid)
+            && of_first_cells.iter().all(|of| of.count <= count && of.direction.iter().chain(&of.dual).all(within))
+            && (0.0..=tuning::FARTHEST).contains(sigma)
             && !weakest_turn.is_nan()
             && !turn_without_most.is_nan()
             && turn_of_rest.as_ref().is_none_or(|(turn, centre)| turn.iter().chain(&centre.coords).all(within))
@@ -203,6 +221,7 @@ impl OutlineMap {
             && centroid.iter().all(|coordinate| coordinate.is_finite());
         if is_valid {
             self.prepare_association();
+            self.find_levers(model);
         }
         is_valid
     }

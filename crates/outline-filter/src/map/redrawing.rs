@@ -129,6 +129,7 @@ mod tests {
             step: spacing,
             most_seen: 0,
             null_space: NullSpace::default(),
+            levers: None,
         }
     }
 

@@ -24,21 +24,23 @@ pub(super) fn add_square(
 pub(super) fn eigen_of_block(
     matrix: &SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>,
     entries: usize,
-) -> Vec<(f64, SVector<f64, MAX_PARAMETERS>)> {
+) -> impl Iterator<Item = (f64, SVector<f64, MAX_PARAMETERS>)> + use<> {
     macro_rules! of_size {
         ($k:literal) => {{
             let eigen = matrix.fixed_view::<$k, $k>(0, 0).into_owned().symmetric_eigen();
             let vector = |j: usize| SVector::from_fn(|i, _| if i < entries { eigen.eigenvectors[(i, j)] } else { 0.0 });
-            (0..entries).map(|j| (eigen.eigenvalues[j], vector(j))).collect()
+            let pair = |j: usize| if j < entries { (eigen.eigenvalues[j], vector(j)) } else { (0.0, SVector::zeros()) };
+            std::array::from_fn::<_, MAX_PARAMETERS, _>(pair)
         }};
     }
-    match entries {
+    let pairs = match entries {
         3 => of_size!(3),
         4 => of_size!(4),
         6 => of_size!(6),
         MAX_PARAMETERS => of_size!(8),
         _ => unreachable!("no model has {entries} parameters"),
-    }
+    };
+    pairs.into_iter().take(entries)
 }
 
 /// What is left of an outline where a frame disagrees with the cells that tell most of a direction of the pose.
@@ -77,7 +79,7 @@ impl Rest {
                 let (across, count) = &of_cells[*number as usize];
                 add_square(&mut levers, across, count.recip(), entries);
             }
-            let least = eigen_of_block(&levers, entries).into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+            let least = eigen_of_block(&levers, entries).min_by(|a, b| a.0.total_cmp(&b.0));
             (rest.lever, rest.direction) = least.unwrap_or((rest.lever, rest.direction));
         }
         rest

@@ -11,6 +11,7 @@ mod likelihood;
 mod linearisation;
 mod noise;
 mod normal_consistency;
+mod part_in_view;
 mod point_deviations;
 mod side_by_side;
 mod variance_inflation;

@@ -72,6 +72,7 @@ impl MotionHistory {
             if let Some((dynamics, measured)) = self.dynamics.as_mut().zip(outcome.pose.as_ref()) {
                 dynamics.update(measured, &outcome.rounding);
                 dynamics.add_shift(&outcome.shift);
+                dynamics.forget(&outcome.forgotten, seconds);
                 if self.change.is_seen() {
                     dynamics.record_change();
                 }

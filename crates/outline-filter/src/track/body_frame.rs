@@ -10,6 +10,7 @@ use crate::tuning::statement::ROUNDING_OF_CORRELATION;
 use crate::{
     belief::StateMatrix,
     dynamics::DynamicsFilter,
+    map::NullDirection,
     prediction::{PoseMatrix, moved_covariance},
 };
 
@@ -20,11 +21,14 @@ use crate::{
 pub(super) struct BodyFrame {
     /// Of that error as far as it is no longer in the information on the pose: in the body frame, normalised.
     covariance: PoseMatrix,
+    /// What the cells that the map has grown by have not in common with the first: how far the outline had gone meanwhile along what it did not show. The
+    /// information on the pose has that as well, hypotheses of dynamics do not.
+    forgotten: PoseMatrix,
 }
 
 impl Default for BodyFrame {
     fn default() -> Self {
-        Self { covariance: PoseMatrix::zeros() }
+        Self { covariance: PoseMatrix::zeros(), forgotten: PoseMatrix::zeros() }
     }
 }
 
@@ -33,7 +37,14 @@ impl BodyFrame {
     pub(super) fn of(covariance: &PoseMatrix) -> Self {
         let mut eigen = (0.5 * (covariance + covariance.transpose())).symmetric_eigen();
         eigen.eigenvalues.apply(|value| *value = value.max(0.0));
-        Self { covariance: eigen.recompose() }
+        Self { covariance: eigen.recompose(), ..Self::default() }
+    }
+
+    /// Takes nothing to be known along directions in the body frame that the outline did not show so far.
+    pub(super) fn forget(&mut self, directions: &[NullDirection]) {
+        for NullDirection { direction, .. } in directions {
+            self.forgotten += PoseMatrix::from_fn(|i, j| direction[i] * direction[j]);
+        }
     }
 }
 
@@ -42,7 +53,7 @@ impl Track {
     /// constant generator, which may have moved the outline.
     pub(crate) fn keep_common_error(&mut self, dynamics: Option<&DynamicsFilter>) {
         if let Some(of_dynamics) = dynamics.and_then(DynamicsFilter::common_error) {
-            self.body_frame = BodyFrame::of(&of_dynamics);
+            self.body_frame = BodyFrame::of(&(of_dynamics + self.body_frame.forgotten));
         } else if let Some(common) = self.common_error() {
             self.body_frame = BodyFrame::of(&(self.body_frame.covariance + common));
         }
@@ -76,9 +87,11 @@ pub(super) fn of_pose(covariance: &StateMatrix) -> PoseMatrix {
 impl BodyFrame {
     /// Whether it may be a covariance: symmetric, without negative variances and in bounds.
     pub(super) fn is_valid(&self) -> bool {
-        let (covariance, size) = (&self.covariance, self.covariance.amax());
-        size <= StateFormat::LARGEST_NUMBER
-            && (covariance - covariance.transpose()).amax() <= ROUNDING_OF_CORRELATION * size
-            && covariance.diagonal().iter().all(|variance| *variance >= 0.0)
+        [self.covariance, self.forgotten].iter().all(|covariance| {
+            let size = covariance.amax();
+            size <= StateFormat::LARGEST_NUMBER
+                && (covariance - covariance.transpose()).amax() <= ROUNDING_OF_CORRELATION * size
+                && covariance.diagonal().iter().all(|variance| *variance >= 0.0)
+        })
     }
 }

@@ -2,14 +2,26 @@
 use std::sync::Arc;
 
 use freeform_curve_fit::Outline;
+use nalgebra::Matrix3;
 
-use super::Track;
+use super::{Track, body_frame::of_pose};
 use crate::{
     belief::StateVector,
-    map::{Contour, TurnEvent},
+    map::{Contour, NullDirections, TurnEvent},
     measurement::{Frame, NO_CELL, Pass},
+    prediction::moved_covariance,
+    tuning::update::DEVIATIONS_PER_CELL,
     update::accumulate,
 };
+
+/// What an outline has become by cells that were added.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Grown {
+    /// Number of the first of them.
+    first_new: usize,
+    /// The null directions of the outline as it was, in the image.
+    forgotten: NullDirections,
+}
 
 impl Track {
     /// A track of the same body frame of what one outline shows, in the pose that this one is in but for its turn, which is unknown as its
@@ -29,38 +41,62 @@ impl Track {
         Some(track)
     }
 
-    /// Adds cells for the parts of contours in the body frame that the map does not have yet, and measures them by the loaded points, which
-    /// the contours are of.
-    pub(super) fn grow_along(&mut self, contours: Vec<Contour>, frame: &mut Frame) {
-        if let Some(first_new) = self.add_cells(contours, frame) {
-            self.measure_new_cells(frame, first_new);
-        }
+    /// Whether it is known where the outline lies in a frame that has been taken, so that what that shows for the first time has a place on it.
+    pub(super) fn knows_place_of_new(&self) -> bool {
+        let displacement = || {
+            let [_, given_outline] = self.held_summaries(&self.null_directions())?;
+            let (model, to_body) = (self.model(), self.belief.pose.try_inverse()?);
+            let in_body = moved_covariance(model, &of_pose(&given_outline.covariance), &to_body)?;
+            self.map.farthest_displacement(model, &in_body)
+        };
+        displacement().is_some_and(|displacement| DEVIATIONS_PER_CELL * displacement < self.map.spacing())
     }
 
-    /// Adds cells that have not been measured, as [`grow_along`](Self::grow_along) does; number of the first of them, if there are any.
-    pub(super) fn add_cells(&mut self, contours: Vec<Contour>, frame: &Frame) -> Option<usize> {
+    /// Adds cells for the parts of contours in the body frame that the map does not have yet, and measures them by the loaded points, which
+    /// the contours are of.
+    ///
+    /// Returns the null directions of the outline as it was, in the image: all that was known along them is forgotten.
+    pub(super) fn grow_along(&mut self, contours: Vec<Contour>, frame: &mut Frame) -> NullDirections {
+        let Some(Grown { first_new, forgotten }) = self.add_cells(contours, frame) else {
+            return NullDirections::default();
+        };
+        self.measure_new_cells(frame, first_new);
+        forgotten
+    }
+
+    /// Adds cells that have not been measured, as [`grow_along`](Self::grow_along) does, if there are any.
+    pub(super) fn add_cells(&mut self, contours: Vec<Contour>, frame: &Frame) -> Option<Grown> {
         let model = self.belief.model;
+        let null = self.map.null_directions(model, &self.belief.pose);
+        let null_in_body = self.map.null_directions(model, &Matrix3::identity());
+        let turn_was_unseen = self.turn_is_unseen();
+        let before = (!null.is_empty()).then(|| Arc::clone(&self.map));
         let map = Arc::make_mut(&mut self.map);
         // Of the body frame. New cells come from points of this frame alone, and the others do not.
         let sigma = self.noise.sigma / self.belief.scale();
         let of_frame = sigma * frame.deviations.typical();
         let first_new = map.grow(contours, of_frame, &self.belief.offsets)?;
+        map.find_null_directions(model, sigma);
+        if let Some(before) = before.filter(|_| !map.are_shown_by_new(model, first_new, &null_in_body)) {
+            self.map = before;
+            return None;
+        }
         let cells = map.cells().len();
         self.belief.information.cells.resize(cells);
         self.belief.offsets.resize(cells, 0.0);
         self.noise.resize(cells);
         self.shape.resize(cells);
         self.early_shape.reserve(cells);
-        let (null, turn_was_unseen) = (map.null_directions(model, &self.belief.pose), map.turn_is_unseen(model));
-        map.find_null_directions(model, sigma);
         if !null.is_empty() {
+            let shown = map.keep_unshown_by_first(model, first_new, &null_in_body);
+            self.body_frame.forget(&shown);
             let variance = self.noise.effective_variance();
             self.belief.forget(&null, variance);
             self.belief.forget(&map.null_directions(model, &self.belief.pose), variance);
             let is_shown = turn_was_unseen && !map.turn_is_unseen(model);
             map.record_turn(if is_shown { TurnEvent::ShownByGrowth } else { TurnEvent::NotShownByGrowth });
         }
-        Some(first_new)
+        Some(Grown { first_new, forgotten: null })
     }
 
     /// Takes the loaded points on cells from `first_new` on, which have just been added, as their first measurement.

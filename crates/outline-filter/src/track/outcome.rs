@@ -4,6 +4,7 @@ use nalgebra::SVector;
 
 use crate::{
     dynamics::CentredDeviations,
+    map::NullDirections,
     measurement::NegativeLogLikelihood,
     tuning::usual_agreement::ALL_OF_IT,
     update::{FrameMeasurement, Gate, PoseInnovation, PoseMeasurement, Rejection},
@@ -44,6 +45,8 @@ pub(crate) struct Outcome {
     pub(crate) rounding: CentredDeviations,
     /// Displacement of the whole outline by the frame, in the body frame.
     pub(crate) shift: SVector<f64, MAX_PARAMETERS>,
+    /// What the outline did not show before the frame, in the image, where it has grown by that: nothing is known along it.
+    pub(crate) forgotten: NullDirections,
     /// Why the object may lie elsewhere although the frame was taken.
     pub(crate) doubt: Option<Doubt>,
     /// Of the frame, given the prediction; zero unless asked for.
@@ -60,6 +63,7 @@ impl Outcome {
             pose: None,
             rounding: CentredDeviations::zeros(),
             shift: SVector::zeros(),
+            forgotten: NullDirections::default(),
             doubt: None,
             likelihood: NegativeLogLikelihood::default(),
         }

@@ -37,6 +37,6 @@ impl Track {
             && self.sensitivity.is_valid(with_sensitivity)
             && self.family.is_valid()
             && self.first_pose.is_valid()
-            && Arc::make_mut(&mut self.map).restore()
+            && Arc::make_mut(&mut self.map).restore(self.belief.model)
     }
 }

@@ -150,7 +150,7 @@ impl Track {
         let verdict = self.verdict_if_grown((gate, &measurement), (frame, &proposal.pose), verdict);
         let shows_outline = matches!(verdict, Ok(()) | Err(Rejection::InnovationTooLarge { .. }));
         let measured = shows_outline.then(|| PoseMeasurement::of(&self.belief, &proposal, frame));
-        let (mut shift, mut doubt) = (SVector::zeros(), None);
+        let (mut shift, mut doubt, mut forgotten) = (SVector::zeros(), None, NullDirections::default());
         if let Some(measured) = measured.filter(|_| verdict.is_ok()) {
             let is_asked = measurement.agreement < usual_agreement::ALL_AGREE;
             let weakest = is_asked.then(|| self.view().weakest_agreement(frame, &limit));
@@ -162,14 +162,14 @@ impl Track {
             self.look_for_change_of_shape(frame);
             shift = self.common_shift(frame);
             self.learn_noise(frame, (noise.map(|noise| noise / radius), correlation), measurement.weight);
-            if measurement.new_points >= tuning::FEWEST_NEW_POINTS {
+            if measurement.new_points >= tuning::FEWEST_NEW_POINTS && self.knows_place_of_new() {
                 let contours = frame.contours(&self.belief.pose);
-                self.grow_along(contours, frame);
+                forgotten = self.grow_along(contours, frame);
             }
         }
         let pose = measured.map(|measured| measured.over(variance));
         let rounding = pose.as_ref().map_or_else(CentredDeviations::zeros, |_| self.rounding_of_pose());
-        Outcome { measurement, verdict, innovation, pose, rounding, shift, doubt, likelihood }
+        Outcome { measurement, verdict, innovation, pose, rounding, shift, forgotten, doubt, likelihood }
     }
 
     /// The verdict of a gate, whose limit on the noise is [`widened`](Self::widened) where outlines do what the motion model leaves out.

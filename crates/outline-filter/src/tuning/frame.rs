@@ -199,6 +199,9 @@ pub(crate) mod update {
     pub(crate) const REGULAR_INFORMATION: f64 = 1e-12;
     /// Fewest points beyond the known ends that make the map grow.
     pub(crate) const FEWEST_NEW_POINTS: usize = 4;
+    /// Deviations of the place of the known outline in a frame that a cell must be longer than for the map to grow: nearly all poses that are off by no
+    /// more put what is known into the cells that it has, and not into new ones.
+    pub(crate) const DEVIATIONS_PER_CELL: f64 = 3.0;
     /// Squared innovation per parameter beyond which the motion has not gone on as it was: five deviations in every one. Chance does
     /// that once in a million frames.
     pub(crate) const SUDDEN: f64 = 25.0;

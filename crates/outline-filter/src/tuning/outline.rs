@@ -153,6 +153,12 @@ pub(crate) mod null_space {
     pub(crate) const MOSTLY_RATES: f64 = 0.5;
     /// Steps of Newton's method to the least of the motions that look alike; each doubles the digits.
     pub(crate) const LEAST_STEPS: usize = 3;
+    /// Share of the square of a direction that is left beside others from which on it is one of its own: of as many as there can be, mixed at will,
+    /// one has as much.
+    pub(crate) const BESIDE: f64 = 0.1;
+    /// Cells across a direction that was not shown before, from which on new ones show it: one or two at a corner are bent, and their normals tell
+    /// nothing. With four the motion of bodies that come out from behind an edge was wrong in twice as many frames, with eight in as many as with six.
+    pub(crate) const FEWEST_TO_SHOW: f64 = 6.0;
     /// Turn, in rad, of a unit step in a direction that counts as turning.
     pub(crate) const HOLDS_TURN: f64 = 0.3;
     /// Share of the largest part of a direction, lengths in RMS radii, from which on a parameter takes part in it.

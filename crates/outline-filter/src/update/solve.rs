@@ -95,6 +95,7 @@ impl View<'_> {
             let null = null_of_step.as_deref().unwrap_or(null);
             let pass = if proposal.iterations == 0 { Pass::First } else { Pass::Again };
             self.measure_by_columns(frame, &proposal.pose, null, pass);
+            self.leave_out_untold(frame, &proposal.pose, null);
             // The room that the frame has for them is used while its equations are set up.
             work.cells = std::mem::take(&mut frame.cells_with_frame);
             let Added { information: added, right } =

@@ -1,0 +1,91 @@
+//! Lever arms: how fast the outline moves along its normals at every cell, by every direction of the pose.
+use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector};
+use nalgebra::{Point2, SMatrix, Vector2};
+
+#[cfg(feature = "serde")]
+use super::OutlineMap;
+use super::{
+    NullDirection,
+    centring::{Centring, NormalByNeighbours},
+    first_cells::OfFirstCells,
+    rest::add_square,
+};
+
+/// The lever arm of a cell: the normal velocities that a unit of every parameter gives its middle, in centred coordinates.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lever {
+    pub(super) across: ParameterVector,
+    /// With the tangent in place of the normal.
+    along: ParameterVector,
+    /// Of the direction of the normal, rad squared.
+    variance: f64,
+    /// Of the outline that the cell stands for, in that of a cell.
+    pub(super) length: f64,
+}
+
+/// The lever arms of all cells, and the coordinates that they are in.
+#[derive(Debug, Clone)]
+pub(super) struct Levers {
+    pub(super) of_cells: Vec<Lever>,
+    pub(super) centring: Centring,
+}
+
+/// Sums over cells, each with what it counts for: of the squares of their levers, and of what errors of their normals would make of these.
+pub(super) struct SumOfSquares {
+    pub(super) levers: SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>,
+    pub(super) of_noise: SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>,
+}
+
+impl Levers {
+    /// Of cells at these places, with their normals.
+    pub(super) fn of(
+        model: MotionModel,
+        centring: Centring,
+        cells: impl Iterator<Item = (Point2<f64>, NormalByNeighbours)>,
+        of_first_cells: &[OfFirstCells],
+    ) -> Self {
+        let lever = |(place, normal): (Point2<f64>, NormalByNeighbours)| {
+            let length = centring.relative_length(&normal.direction);
+            let (normal, variance) = centring.normal(&normal);
+            let p = centring.centred(&place);
+            let velocities = |direction| model.normal_velocities(&p, direction);
+            let along = Vector2::new(-normal.y, normal.x);
+            Lever { across: velocities(&normal), along: velocities(&along), variance, length }
+        };
+        let mut levers = Self { of_cells: cells.map(lever).collect(), centring };
+        of_first_cells.iter().for_each(|of_first| levers.leave_out(model, of_first));
+        levers
+    }
+
+    /// Leaves out what the first cells do not show.
+    pub(super) fn leave_out(&mut self, model: MotionModel, of_first: &OfFirstCells) {
+        let to_body = self.centring.to_body();
+        let Some(from_body) = to_body.try_inverse() else { return };
+        let OfFirstCells { count, direction, dual } = *of_first;
+        let null = NullDirection { direction, dual }.moved(model, (&from_body, &to_body));
+        self.of_cells.iter_mut().take(count).for_each(|lever| null.project_out(&mut lever.across));
+    }
+}
+
+impl SumOfSquares {
+    /// Over levers of k parameters.
+    pub(super) fn of<'a>(levers: impl Iterator<Item = (&'a Lever, f64)>, k: usize) -> Self {
+        let zeros = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::zeros();
+        let mut sum = Self { levers: zeros, of_noise: zeros };
+        for (lever, times) in levers {
+            add_square(&mut sum.levers, &lever.across.into(), times, k);
+            add_square(&mut sum.of_noise, &lever.along.into(), lever.variance * times, k);
+        }
+        sum
+    }
+}
+
+#[cfg(feature = "serde")]
+impl OutlineMap {
+    /// Works the lever arms out anew, as they were when the null directions were found last.
+    pub(super) fn find_levers(&mut self, model: MotionModel) {
+        let sigma = self.null_space.sigma;
+        let centring = Centring::of(&self.cells, model, sigma, Self::area_covariance(&self.closed_contours()));
+        self.levers = Some(self.levers_about(model, centring, sigma));
+    }
+}

@@ -1,0 +1,123 @@
+//! Bodies whose ends come out from behind the edges of a window while their long sides are followed.
+use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
+use freeform_riccati::MotionModel;
+use nalgebra::{Point2, Rotation2, Vector2};
+use rand::{RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
+
+use crate::filter_support::filter;
+
+const FRAME_RATE: f64 = 30.0;
+const FRAMES: u32 = 40;
+/// Standard deviation of the points, pixels.
+const NOISE: f64 = 0.25;
+/// How far apart points are, pixels.
+const SPACING: f64 = 1.4;
+/// Half of the sides of the window, pixels.
+const WINDOW: Vector2<f64> = Vector2::new(60.0, 55.0);
+/// Half of the sides of the rectangle, pixels.
+const SIDES: Vector2<f64> = Vector2::new(80.0, 30.0);
+
+/// A rectangle that turns slowly about a point of its own and travels along itself, its end coming into view.
+struct Slide {
+    angle: f64,
+    /// Middle at the first frame, and its velocity there, pixels and pixels per second.
+    middle: Vector2<f64>,
+    velocity: Vector2<f64>,
+    omega: f64,
+}
+
+impl Slide {
+    /// Its end comes into the window about a third of a second after the first frame.
+    fn any(random: &mut ChaCha8Rng) -> Self {
+        let angle = random.random_range(0.0..std::f64::consts::TAU);
+        let along = Rotation2::new(angle) * Vector2::x();
+        let (speed, jitter) = (random.random_range(20.0..90.0), random.random_range(-4.0..4.0));
+        let to_edge = along.component_div(&WINDOW).amax().recip();
+        Self {
+            angle,
+            middle: (SIDES.x - to_edge - speed / 3.0) * along + Vector2::repeat(jitter),
+            velocity: speed * along,
+            omega: random.random_range(-0.4..0.4),
+        }
+    }
+
+    /// The constant generator that takes the body on: b1 and b2.
+    fn b(&self) -> Vector2<f64> {
+        self.velocity - self.omega * Vector2::new(self.middle.y, -self.middle.x)
+    }
+
+    /// Where a point at the first frame is at a time.
+    fn moved(&self, point: &Vector2<f64>, time: f64) -> Vector2<f64> {
+        let mut motion = [0.0; freeform_riccati::MAX_PARAMETERS];
+        (motion[0], motion[1], motion[2]) = (self.omega, self.b().x, self.b().y);
+        (MotionModel::Rigid.flow(&motion[..3], time) * Point2::from(*point)).coords
+    }
+
+    /// The arcs in the window at a time.
+    fn seen(&self, time: f64, random: &mut ChaCha8Rng) -> Outline {
+        let corners =
+            [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|s| SIDES.component_mul(&Vector2::from(s)));
+        let shift = SPACING * random.random::<f64>();
+        let mut points = Vec::new();
+        for i in 0..4 {
+            let (from, to) = (corners[i], corners[(i + 1) % 4]);
+            let (length, along) = ((to - from).norm(), (to - from).normalize());
+            let places = (0..(length / SPACING) as u32).map(|j| from + (shift + SPACING * f64::from(j)) * along);
+            points.extend(places.map(|p| self.moved(&(self.middle + Rotation2::new(self.angle) * p), time)));
+        }
+        let is_seen: Vec<bool> = points.iter().map(|p| (p.abs() - WINDOW).max() < 0.0).collect();
+        let begin = is_seen.iter().position(|seen| !seen).expect("something is hidden");
+        let mut arcs: Vec<Vec<Point2<f64>>> = vec![Vec::new()];
+        for i in (0..points.len()).map(|i| (begin + i) % points.len()) {
+            let noisy = points[i].map(|c| c + NOISE * random.sample::<f64, _>(StandardNormal));
+            match (is_seen[i], arcs.last_mut()) {
+                (true, Some(arc)) => arc.push(Point2::from(noisy)),
+                _ => arcs.push(Vec::new()),
+            }
+        }
+        let arcs = arcs.into_iter().filter(|arc| arc.len() >= 4).map(|arc| OpenArc::new(arc).expect("an arc"));
+        Outline::Open(OpenOutline::new(arcs.collect()).expect("arcs"))
+    }
+}
+
+#[test]
+fn bodies_whose_ends_come_into_view_are_where_and_as_fast_as_is_stated_or_that_is_not_known() {
+    let (mut stated, mut off, mut known_at_end) = ([0; 2], [0; 2], 0);
+    for seed in 0..12 {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let slide = Slide::any(&mut random);
+        let mut run = filter(MotionModel::Rigid);
+        let mut first_middle = None;
+        for frame in 0..FRAMES {
+            let time = f64::from(frame) / FRAME_RATE;
+            let outline = slide.seen(time, &mut random);
+            let from = *first_middle.get_or_insert(outline.centroid().coords);
+            let step = run.step(time, &outline).expect("increasing times");
+            let truth = [slide.omega, slide.b().x, slide.b().y];
+            let parameters = run.estimate();
+            for (parameter, truth) in parameters.iter().flat_map(|estimate| estimate.parameters()).zip(truth) {
+                if let Some((value, deviation)) = parameter.value.zip(parameter.standard_deviation) {
+                    stated[0] += 1;
+                    off[0] += u32::from((value - truth).abs() > 4.0 * deviation);
+                }
+            }
+            let place = slide.moved(&from, time);
+            // After a break nothing is said of how poses are related to those before.
+            if let Some(state) = run.state().filter(|_| step.is_accepted() && run.restarts() == 0) {
+                let parameters = state.pose_parameters();
+                for (parameter, truth) in parameters[1..3].iter().zip(place.iter()).filter(|(p, _)| !p.value.is_nan()) {
+                    stated[1] += 1;
+                    off[1] += u32::from((parameter.value - truth).abs() > 4.0 * parameter.standard_deviation);
+                }
+            }
+        }
+        let b1 = run.estimate().and_then(|estimate| estimate.parameters().nth(1)?.standard_deviation);
+        known_at_end += u32::from(b1.is_some_and(|deviation| deviation < 2.0));
+    }
+    println!("of motions and places {stated:?} stated, {off:?} off; {known_at_end} of 12 known at the end");
+    assert!(stated[0] > 800 && off[0] <= stated[0] / 50, "motions: {} of {}", off[0], stated[0]);
+    assert!(stated[1] > 300 && off[1] <= stated[1] / 50, "places: {} of {}", off[1], stated[1]);
+    assert!(known_at_end >= 9, "{known_at_end}");
+}
