@@ -48,7 +48,7 @@ impl LabelChoice {
                  is lighter than a threshold instead)"
             )),
             Self::Maybe(LabelEvidence { labels, .. }) => Some(format!(
-                "the pictures have flat areas of {labels} grey values, as label masks have: --objects labels takes each value for an object"
+                "the pictures have flat areas of {labels} values, as label masks have: --objects labels takes each value for an object"
             )),
             Self::Labels(None) | Self::Greys => None,
         }

@@ -210,17 +210,33 @@ impl PictureInput {
             .collect()
     }
 
-    /// What the outlines say of the pixels, after all have been read.
-    pub(crate) fn closing_remark(&self) -> Option<String> {
-        if let Some(LabelInParts { frame, label, largest, next }) = self.traced.label_in_parts() {
-            return Some(format!(
+    /// What is to be said after all have been read: of the labels, or of what the outlines say of the pixels.
+    pub(crate) fn closing_remarks(&self) -> Vec<String> {
+        let of_labels: Vec<String> = self.label_warnings().into_iter().map(|(_, warning)| warning).collect();
+        if of_labels.is_empty() { self.remark_on_pixels().into_iter().collect() } else { of_labels }
+    }
+
+    /// What is wrong with the labels of masks read so far, with the codes.
+    fn label_warnings(&self) -> Vec<(OriginWarning, String)> {
+        let labels = self.traced.labels();
+        let in_parts = labels.and_then(LabelPictures::in_parts).map(|LabelInParts { frame, label, largest, next }| {
+            let told = format!(
                 "frame {frame}, label {label}: the largest part, of {largest} pixels, is taken, and one of {next} pixels is not; give each object \
                  a label of its own"
-            ));
-        }
-        if let Some(LabelLeftOut { frame, label, reason }) = self.traced.label_left_out() {
-            return Some(format!("frame {frame}, label {label}: no outline, while others have one: {reason}"));
-        }
+            );
+            (OriginWarning::LabelInParts, told)
+        });
+        let left_out = labels.and_then(LabelPictures::left_out).map(|LabelLeftOut { frame, label, reason }| {
+            let told = format!("frame {frame}, label {label}: no outline, while others have one: {reason}");
+            (OriginWarning::LabelLeftOut, told)
+        });
+        let void = labels
+            .and_then(LabelPictures::void_in)
+            .map(|frame| (OriginWarning::VoidBorders, format!("frame {frame}: {}", OriginWarning::VoidBorders)));
+        in_parts.into_iter().chain(left_out).chain(void).collect()
+    }
+
+    fn remark_on_pixels(&self) -> Option<String> {
         let aspect = self.traced.better_pixel_aspect()?;
         let symptom = "the object keeps its shape as it turns only with pixels of another aspect";
         Some(format!(
@@ -245,6 +261,7 @@ impl PictureInput {
             let message = format!("{}; deinterlace it, such as with ffmpeg -vf yadif", OriginWarning::Interlaced);
             warnings.push((OriginWarning::Interlaced, message));
         }
+        warnings.extend(self.label_warnings());
         warnings
     }
 
