@@ -1,7 +1,7 @@
 //! Whether an outline turns in its place.
 use std::f64::consts::TAU;
 
-use nalgebra::{Point2, Vector2};
+use nalgebra::Vector2;
 
 use super::sight::Sight;
 use super::tuning::turning as tuning;
@@ -9,6 +9,9 @@ use crate::edges::median;
 
 /// Directions in which an outline is looked at from its middle.
 const DIRECTIONS: usize = 256;
+
+/// Parts of the angle between two of them by which a turn is told.
+const PARTS: i32 = 4;
 
 /// How far an outline reaches from its middle in every direction.
 pub(super) struct Reach([f64; DIRECTIONS]);
@@ -50,23 +53,28 @@ impl Reach {
         squares.sum::<f64>() / DIRECTIONS as f64
     }
 
-    /// Whether another is clearly more like this if this is turned by so much.
-    pub(super) fn has_turned(&self, other: &Self, turn: f64) -> bool {
-        self.misfit(other, turn) < tuning::TURNED.powi(2) * self.misfit(other, 0.0)
+    /// The same, turned by whole directions.
+    fn misfit_by(&self, other: &Self, directions: usize) -> f64 {
+        let (before, from) = other.0.split_at(directions);
+        let (with_from, with_before) = self.0.split_at(from.len());
+        let squares = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+        (squares(with_from, from) + squares(with_before, before)) / DIRECTIONS as f64
     }
 
-    /// By how much this is like another at its best, over how much it is as it lies: squared.
+    /// Whether another is clearly more like this if this is turned.
+    pub(super) fn has_turned_to(&self, other: &Self) -> bool {
+        self.gain(other).is_some_and(|gain| gain < tuning::TURNED.powi(2))
+    }
+
+    /// By how much this, turned, is like another at its best, over how much it is as it lies: squared.
     fn gain(&self, other: &Self) -> Option<f64> {
         let as_it_lies = self.misfit(other, 0.0);
-        let turned = (1..DIRECTIONS).map(|k| self.misfit(other, k as f64 / DIRECTIONS as f64 * TAU));
-        (as_it_lies > 0.0).then(|| turned.fold(as_it_lies, f64::min) / as_it_lies)
+        let of_directions = (0..DIRECTIONS).map(|k| (k, self.misfit_by(other, k)));
+        let (nearest, _) = of_directions.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let part = |part: i32| (nearest as f64 + f64::from(part) / f64::from(PARTS)) * TAU / DIRECTIONS as f64;
+        let least = (1 - PARTS..PARTS).map(|k| self.misfit(other, part(k))).fold(f64::INFINITY, f64::min);
+        (as_it_lies > 0.0).then(|| least / as_it_lies)
     }
-}
-
-/// The angle that a place goes around from one to another, as seen from middles that may move.
-pub(super) fn turn_about([from, to]: [Point2<f64>; 2], [first, last]: [Point2<f64>; 2]) -> f64 {
-    let (from, to) = (from - first, to - last);
-    from.perp(&to).atan2(from.dot(&to))
 }
 
 /// Whether what is seen turns: most outlines are clearly more like the first where that is turned.
@@ -84,6 +92,8 @@ fn direction_of(from_middle: Vector2<f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Point2;
+
     use super::*;
 
     /// What is seen of an outline that reaches so far from its middle in a direction.
@@ -128,17 +138,12 @@ mod tests {
     }
 
     #[test]
-    fn an_outline_has_turned_along_with_its_tooth_and_not_with_what_goes_over_it() {
+    fn a_wheel_has_turned_by_little_too_and_a_plate_over_whose_edge_something_goes_has_not() {
         let reach = |sight: Sight| Reach::of(&sight).expect("an outline");
-        assert!(reach(wheel(0.2)).has_turned(&reach(wheel(0.26)), 0.06));
-        assert!(!reach(wheel(0.2)).has_turned(&reach(wheel(0.2)), 0.06));
-        assert!(!reach(plate(0.2)).has_turned(&reach(plate(0.26)), 0.06));
-    }
-
-    #[test]
-    fn the_turn_of_a_place_is_that_about_a_middle_that_moves() {
-        let at = |x: f64, y: f64| Point2::new(x, y);
-        let quarter = turn_about([at(5.0, 0.0), at(10.0, 5.0)], [at(0.0, 0.0), at(10.0, 0.0)]);
-        assert!((quarter - 0.25 * TAU).abs() < 1e-12);
+        for turn in [0.02, 0.06, 0.3] {
+            assert!(reach(wheel(0.2)).has_turned_to(&reach(wheel(0.2 + turn))), "{turn}");
+            assert!(!reach(plate(0.2)).has_turned_to(&reach(plate(0.2 + turn))), "{turn}");
+        }
+        assert!(!reach(wheel(0.2)).has_turned_to(&reach(wheel(0.2))));
     }
 }
