@@ -8,9 +8,8 @@ use std::thread::available_parallelism;
 
 use freeform_drawing::{MeaningOfB, candidate_sheet};
 use freeform_motion::outline_io::{
-    Channel, LabelInParts, LabelLeftOut, LabelPictures, OriginWarning, OutlineUncertainty, PictureError,
-    PictureErrorKind, PicturePreview, PictureSequence, PictureSettings, TraceSettings, TracedPicture, TracedPictures,
-    TracingEvidence, read_ahead,
+    Channel, LabelPictures, OriginWarning, OutlineUncertainty, PictureError, PictureErrorKind, PicturePreview,
+    PictureSequence, PictureSettings, TraceSettings, TracedPicture, TracedPictures, TracingEvidence, read_ahead,
 };
 use freeform_motion::riccati::CameraScale;
 use freeform_motion::short;
@@ -21,7 +20,7 @@ use crate::awaited::{Awaited, Waiting};
 use crate::command_line::{command_line_of_stdin, quoted};
 use crate::failure::{Failure, plain};
 use crate::interrupt;
-use crate::label_choice::{LabelChoice, refused_stream};
+use crate::label_choice::{LabelChoice, label_warnings, refused_stream};
 use crate::output::WholeFile;
 use crate::picture_hints::{hint, missed_bodies};
 use crate::picture_settings::{picture_settings, sequence_settings};
@@ -218,22 +217,7 @@ impl PictureInput {
 
     /// What is wrong with the labels of masks read so far, with the codes.
     fn label_warnings(&self) -> Vec<(OriginWarning, String)> {
-        let labels = self.traced.labels();
-        let in_parts = labels.and_then(LabelPictures::in_parts).map(|LabelInParts { frame, label, largest, next }| {
-            let told = format!(
-                "frame {frame}, label {label}: the largest part, of {largest} pixels, is taken, and one of {next} pixels is not; give each object \
-                 a label of its own"
-            );
-            (OriginWarning::LabelInParts, told)
-        });
-        let left_out = labels.and_then(LabelPictures::left_out).map(|LabelLeftOut { frame, label, reason }| {
-            let told = format!("frame {frame}, label {label}: no outline, while others have one: {reason}");
-            (OriginWarning::LabelLeftOut, told)
-        });
-        let void = labels
-            .and_then(LabelPictures::void_in)
-            .map(|frame| (OriginWarning::VoidBorders, format!("frame {frame}: {}", OriginWarning::VoidBorders)));
-        in_parts.into_iter().chain(left_out).chain(void).collect()
+        self.traced.labels().map(label_warnings).unwrap_or_default()
     }
 
     fn remark_on_pixels(&self) -> Option<String> {
