@@ -79,6 +79,17 @@ fn true_omegas(frames: &str) -> [f64; 2] {
 }
 
 #[test]
+fn nothing_moves_beside_a_gear_that_turns_about_a_middle_that_hardly_moves() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for seed in [3, 4, 7] {
+        let frames = format!("{}/{seed}", folder.path().to_str().expect("UTF-8"));
+        succeed(&format!("simulate --pictures {frames} --seed {seed} --seconds 1"), "");
+        let document = json(&succeed(&format!("identify {frames} --fps 30 --quiet --json"), ""));
+        assert!(document["warnings"].is_null(), "{seed}: {}", document["warnings"]);
+    }
+}
+
+#[test]
 fn where_each_body_is_first_seen_whole_tells_which_object_it_is() {
     let folder = tempfile::tempdir().expect("a folder");
     let frames = format!("{}/belt", folder.path().to_str().expect("UTF-8"));
