@@ -295,7 +295,7 @@ impl Input {
 
     /// Says what was seen to be wrong while the input was read.
     pub(crate) fn tell_in_the_end(&self) {
-        self.pictures().and_then(PictureInput::closing_remark).iter().for_each(|warning| warn(warning));
+        self.pictures().map(PictureInput::closing_remarks).unwrap_or_default().iter().for_each(|warning| warn(warning));
     }
 
     /// Whether all objects of the last picture have been handed on.

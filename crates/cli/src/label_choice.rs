@@ -1,5 +1,7 @@
 //! Whether pictures are taken for label masks.
-use freeform_motion::outline_io::{LabelEvidence, PicturePreview};
+use freeform_motion::outline_io::{
+    LabelEvidence, LabelInParts, LabelLeftOut, LabelPictures, OriginWarning, PicturePreview,
+};
 
 use crate::args::{ObjectsChoice, PictureOptions};
 use crate::failure::Failure;
@@ -48,11 +50,30 @@ impl LabelChoice {
                  is lighter than a threshold instead)"
             )),
             Self::Maybe(LabelEvidence { labels, .. }) => Some(format!(
-                "the pictures have flat areas of {labels} grey values, as label masks have: --objects labels takes each value for an object"
+                "the pictures have flat areas of {labels} values, as label masks have: --objects labels takes each value for an object"
             )),
             Self::Labels(None) | Self::Greys => None,
         }
     }
+}
+
+/// What is wrong with the labels of masks read so far, with the codes.
+pub(crate) fn label_warnings(labels: &LabelPictures) -> Vec<(OriginWarning, String)> {
+    let in_parts = labels.in_parts().map(|LabelInParts { frame, label, largest, next }| {
+        let told = format!(
+            "frame {frame}, label {label}: the largest part, of {largest} pixels, is taken, and one of {next} pixels is not; give each object \
+             a label of its own"
+        );
+        (OriginWarning::LabelInParts, told)
+    });
+    let left_out = labels.left_out().map(|LabelLeftOut { frame, label, reason }| {
+        let told = format!("frame {frame}, label {label}: no outline, while others have one: {reason}");
+        (OriginWarning::LabelLeftOut, told)
+    });
+    let void = labels
+        .void_in()
+        .map(|frame| (OriginWarning::VoidBorders, format!("frame {frame}: {}", OriginWarning::VoidBorders)));
+    in_parts.into_iter().chain(left_out).chain(void).collect()
 }
 
 /// That labels are asked for where pictures are not files of one each.

@@ -8,9 +8,8 @@ use std::thread::available_parallelism;
 
 use freeform_drawing::{MeaningOfB, candidate_sheet};
 use freeform_motion::outline_io::{
-    Channel, LabelInParts, LabelLeftOut, LabelPictures, OriginWarning, OutlineUncertainty, PictureError,
-    PictureErrorKind, PicturePreview, PictureSequence, PictureSettings, TraceSettings, TracedPicture, TracedPictures,
-    TracingEvidence, read_ahead,
+    Channel, LabelPictures, OriginWarning, OutlineUncertainty, PictureError, PictureErrorKind, PicturePreview,
+    PictureSequence, PictureSettings, TraceSettings, TracedPicture, TracedPictures, TracingEvidence, read_ahead,
 };
 use freeform_motion::riccati::CameraScale;
 use freeform_motion::short;
@@ -21,7 +20,7 @@ use crate::awaited::{Awaited, Waiting};
 use crate::command_line::{command_line_of_stdin, quoted};
 use crate::failure::{Failure, plain};
 use crate::interrupt;
-use crate::label_choice::{LabelChoice, refused_stream};
+use crate::label_choice::{LabelChoice, label_warnings, refused_stream};
 use crate::output::WholeFile;
 use crate::picture_hints::{hint, missed_bodies};
 use crate::picture_settings::{picture_settings, sequence_settings};
@@ -210,17 +209,18 @@ impl PictureInput {
             .collect()
     }
 
-    /// What the outlines say of the pixels, after all have been read.
-    pub(crate) fn closing_remark(&self) -> Option<String> {
-        if let Some(LabelInParts { frame, label, largest, next }) = self.traced.label_in_parts() {
-            return Some(format!(
-                "frame {frame}, label {label}: the largest part, of {largest} pixels, is taken, and one of {next} pixels is not; give each object \
-                 a label of its own"
-            ));
-        }
-        if let Some(LabelLeftOut { frame, label, reason }) = self.traced.label_left_out() {
-            return Some(format!("frame {frame}, label {label}: no outline, while others have one: {reason}"));
-        }
+    /// What is to be said after all have been read: of the labels, or of what the outlines say of the pixels.
+    pub(crate) fn closing_remarks(&self) -> Vec<String> {
+        let of_labels: Vec<String> = self.label_warnings().into_iter().map(|(_, warning)| warning).collect();
+        if of_labels.is_empty() { self.remark_on_pixels().into_iter().collect() } else { of_labels }
+    }
+
+    /// What is wrong with the labels of masks read so far, with the codes.
+    fn label_warnings(&self) -> Vec<(OriginWarning, String)> {
+        self.traced.labels().map(label_warnings).unwrap_or_default()
+    }
+
+    fn remark_on_pixels(&self) -> Option<String> {
         let aspect = self.traced.better_pixel_aspect()?;
         let symptom = "the object keeps its shape as it turns only with pixels of another aspect";
         Some(format!(
@@ -245,6 +245,7 @@ impl PictureInput {
             let message = format!("{}; deinterlace it, such as with ffmpeg -vf yadif", OriginWarning::Interlaced);
             warnings.push((OriginWarning::Interlaced, message));
         }
+        warnings.extend(self.label_warnings());
         warnings
     }
 

@@ -1,7 +1,6 @@
 //! Pictures as they are traced: by their grey values, or label by label.
 use freeform_motion::outline_io::{
-    LabelInParts, LabelLeftOut, LabelPictures, PictureError, PictureSequence, TraceSettings, TracedPicture,
-    TracedPictures, TracingSummary,
+    LabelPictures, PictureError, PictureSequence, TraceSettings, TracedPicture, TracedPictures, TracingSummary,
 };
 
 /// The pictures of an input, one after the other.
@@ -61,19 +60,11 @@ impl Traced {
         }
     }
 
-    /// A label that is in several parts of about the same size.
-    pub(crate) fn label_in_parts(&self) -> Option<LabelInParts> {
+    /// The masks, where every label is an object.
+    pub(crate) fn labels(&self) -> Option<&LabelPictures> {
         match self {
             Self::Greys(_) => None,
-            Self::Labels(labels) => labels.in_parts(),
-        }
-    }
-
-    /// A label that no outline was found of, beside others.
-    pub(crate) fn label_left_out(&self) -> Option<&LabelLeftOut> {
-        match self {
-            Self::Greys(_) => None,
-            Self::Labels(labels) => labels.left_out(),
+            Self::Labels(labels) => Some(labels),
         }
     }
 }

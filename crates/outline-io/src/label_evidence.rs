@@ -12,7 +12,7 @@ const MOST_SCATTERED: f64 = 0.005;
 const ENOUGH_PIXELS: usize = 4096;
 
 /// Labels are counted from 1: the largest is up to this, or up to so many times their number, as of some the objects have left.
-const LARGEST_NUMBER: i64 = 32;
+pub(crate) const LARGEST_NUMBER: i64 = 32;
 const LARGEST_PER_LABEL: i64 = 4;
 
 /// What speaks for it that pictures are label masks: their ground is 0, other values fill areas of them, and most pictures show two of them at least.
@@ -21,7 +21,8 @@ const LARGEST_PER_LABEL: i64 = 4;
 pub struct LabelEvidence {
     /// Different labels in the pictures that were looked at, two at least.
     pub labels: usize,
-    /// Whether they are small numbers, as labels are and grey values hardly ever.
+    /// Whether they are small numbers, as labels are and grey values hardly ever. Places in a palette are small in drawings too, and count only in that of
+    /// PASCAL VOC.
     pub are_numbers: bool,
     /// Whether every label borders on the ground with half of its edge or more: a mark on a body does not.
     pub are_on_ground: bool,
@@ -38,9 +39,11 @@ impl LabelEvidence {
     /// Looks at pictures; `None` where one of them is no label mask, or there are less than two labels.
     pub(crate) fn of(pictures: impl IntoIterator<Item = Option<LabelPicture>>) -> Option<Self> {
         let mut all: BTreeMap<i64, Border> = BTreeMap::new();
-        let (mut with_labels, mut with_several) = (0_usize, 0);
+        let (mut with_labels, mut with_several, mut has_own_palette) = (0_usize, 0, false);
         for picture in pictures {
-            let found = borders(&picture?)?;
+            let picture = picture?;
+            has_own_palette |= picture.has_own_palette;
+            let found = borders(&picture)?;
             with_labels += usize::from(!found.is_empty());
             with_several += usize::from(found.len() >= 2);
             for (label, border) in found {
@@ -55,7 +58,8 @@ impl LabelEvidence {
         let largest = *all.last_key_value().filter(|_| all.len() >= 2)?.0;
         Some(Self {
             labels: all.len(),
-            are_numbers: largest <= LARGEST_NUMBER || largest <= LARGEST_PER_LABEL * all.len() as i64,
+            are_numbers: !has_own_palette
+                && (largest <= LARGEST_NUMBER || largest <= LARGEST_PER_LABEL * all.len() as i64),
             are_on_ground: all.values().all(|border| border.on_ground >= border.on_others),
         })
     }
@@ -78,7 +82,7 @@ struct Tally {
 }
 
 /// The edges of every label of a picture; `None` where it is no label mask.
-fn borders(LabelPicture { width, height, labels }: &LabelPicture) -> Option<BTreeMap<i64, Border>> {
+fn borders(LabelPicture { width, height, labels, .. }: &LabelPicture) -> Option<BTreeMap<i64, Border>> {
     if labels.is_empty() {
         return None;
     }
@@ -143,7 +147,8 @@ mod tests {
 
     fn picture(width: usize, height: usize, label: impl Fn(usize, usize) -> i64) -> Option<LabelPicture> {
         let labels = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
-        Some(LabelPicture { width, height, labels: labels.map(|(column, row)| label(column, row)).collect() })
+        let labels = labels.map(|(column, row)| label(column, row)).collect();
+        Some(LabelPicture { width, height, labels, has_own_palette: false, had_void: false })
     }
 
     /// Two squares of these values.

@@ -3,16 +3,18 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use image::{DynamicImage, GenericImageView as _, GrayImage};
+use image::{DynamicImage, GenericImageView as _, GrayImage, RgbaImage};
 
 use crate::frame::OutlineFrame;
 use crate::labels::{LabelMask, TracedLabel};
+use crate::palette::palette_of_png;
 use crate::picture::read_picture_colours;
 use crate::picture_error::{PictureError, PictureErrorKind, TraceError};
 use crate::picture_sequence::DEFAULT_RATE;
 use crate::source_picture::SourcePicture;
 use crate::trace_settings::TraceSettings;
 use crate::traced_pictures::{TracedPicture, TracingSummary};
+use crate::void_border::without_void;
 
 /// Share of the pixels at the sides of a label mask that are ground.
 const LEAST_GROUND: f64 = 0.5;
@@ -32,12 +34,17 @@ pub(crate) struct LabelPicture {
     pub(crate) width: usize,
     pub(crate) height: usize,
     pub(crate) labels: Vec<i64>,
+    /// Whether the labels are places in a palette other than that of PASCAL VOC, as drawings have it too.
+    pub(crate) has_own_palette: bool,
+    /// Whether borders of objects were marked as void, and have been shared out among what they lie between.
+    pub(crate) had_void: bool,
 }
 
 impl LabelPicture {
     pub(crate) fn read(path: &Path) -> Result<Self, PictureError> {
         let not_labels = || PictureError::of_file(path.display().to_string(), PictureErrorKind::NotLabels);
-        read_picture_colours(path).and_then(|picture| Self::of(&picture).ok_or_else(not_labels))
+        let picture = read_picture_colours(path)?;
+        Self::of(&picture, || palette_of_png(path)).ok_or_else(not_labels)
     }
 
     /// Of a picture that has ground around it, as label masks have: nothing is taken from others, which may be large.
@@ -53,18 +60,34 @@ impl LabelPicture {
         let along = (0..height).flat_map(|y| [(0, y), (width.saturating_sub(1), y)]);
         let ground = across.chain(along).filter(|(x, y)| *x < width && *y < height && is_ground(*x, *y)).count();
         let is_around = ground as f64 >= LEAST_GROUND * (2 * (u64::from(width) + u64::from(height))) as f64;
-        if is_around { Self::of(&picture) } else { None }
+        if is_around { Self::of(&picture, || palette_of_png(path)) } else { None }
     }
 
-    /// The grey values, or the numbers of colours that label masks are painted with; nothing of other pictures.
-    pub(crate) fn of(picture: &DynamicImage) -> Option<Self> {
+    /// The grey values, or the numbers of colours that label masks are painted with, those of PASCAL VOC or of a palette of the picture; nothing of other
+    /// pictures. Borders that are marked as void are shared out.
+    pub(crate) fn of(picture: &DynamicImage, palette: impl FnOnce() -> Option<Vec<[u8; 3]>>) -> Option<Self> {
         let (width, height) = (picture.width() as usize, picture.height() as usize);
+        let mut has_own_palette = false;
         let labels = match picture {
             DynamicImage::ImageLuma8(grey) => grey.as_raw().iter().map(|value| i64::from(*value)).collect(),
             DynamicImage::ImageLuma16(grey) => grey.as_raw().iter().map(|value| i64::from(*value)).collect(),
-            _ => labels_of_colours(picture)?,
+            _ => {
+                let colours = plain_colours(picture)?;
+                let (pixels, _) = colours.as_raw().as_chunks::<4>();
+                labels_of_voc(pixels)
+                    .or_else(|| {
+                        let labels = numbers_in(&palette()?, pixels);
+                        has_own_palette = labels.is_some();
+                        labels
+                    })
+                    .or_else(|| grey_labels(pixels))?
+            }
         };
-        Some(Self { width, height, labels })
+        let (labels, had_void) = match without_void(&labels, width, height) {
+            Some(labels) => (labels, true),
+            None => (labels, false),
+        };
+        Some(Self { width, height, labels, has_own_palette, had_void })
     }
 
     /// As it is drawn upon.
@@ -79,30 +102,30 @@ impl LabelPicture {
     }
 }
 
-/// Labels by the colours of a picture of 8 bits without transparency: grey ones, or those of the palette of PASCAL VOC and DAVIS, whose first 256
-/// numbers are spread over the bits of red, green and blue.
-fn labels_of_colours(picture: &DynamicImage) -> Option<Vec<i64>> {
+/// The colours of a picture of 8 bits without transparency.
+fn plain_colours(picture: &DynamicImage) -> Option<RgbaImage> {
     let is_plain =
         matches!(picture, DynamicImage::ImageRgb8(_) | DynamicImage::ImageRgba8(_) | DynamicImage::ImageLumaA8(_));
-    if !is_plain {
-        return None;
-    }
-    let colours = picture.to_rgba8();
-    let (pixels, _) = colours.as_raw().as_chunks::<4>();
-    if pixels.iter().any(|[.., alpha]| *alpha < u8::MAX) {
-        return None;
-    }
-    // Some colours of the palette are grey, and may be all that a picture of it shows.
-    labels_of_palette(pixels).or_else(|| {
-        let are_grey = pixels.iter().all(|[red, green, blue, _]| red == green && green == blue);
-        are_grey.then(|| pixels.iter().map(|[grey, ..]| i64::from(*grey)).collect())
-    })
+    let colours = is_plain.then(|| picture.to_rgba8())?;
+    colours.pixels().all(|pixel| pixel.0[3] == u8::MAX).then_some(colours)
 }
 
-/// The numbers of colours that all are of the palette.
-fn labels_of_palette(pixels: &[[u8; 4]]) -> Option<Vec<i64>> {
-    let numbers: BTreeMap<[u8; 3], i64> = (0..256).map(|number| (palette_colour(number), number)).collect();
-    let mut latest = ([0; 3], 0);
+/// Labels by the palette of PASCAL VOC and DAVIS, whose first 256 numbers are spread over the bits of red, green and blue. Some of its colours are
+/// grey, and may be all that a picture of it shows.
+fn labels_of_voc(pixels: &[[u8; 4]]) -> Option<Vec<i64>> {
+    numbers_in(&(0..256).map(palette_colour).collect::<Vec<_>>(), pixels)
+}
+
+fn grey_labels(pixels: &[[u8; 4]]) -> Option<Vec<i64>> {
+    let are_grey = pixels.iter().all(|[red, green, blue, _]| red == green && green == blue);
+    are_grey.then(|| pixels.iter().map(|[grey, ..]| i64::from(*grey)).collect())
+}
+
+/// The numbers of colours that all are of a palette, of which the first of several that are alike counts.
+fn numbers_in(palette: &[[u8; 3]], pixels: &[[u8; 4]]) -> Option<Vec<i64>> {
+    let numbers: BTreeMap<[u8; 3], i64> =
+        palette.iter().enumerate().rev().map(|(number, colour)| (*colour, number as i64)).collect();
+    let mut latest = (*palette.first()?, 0);
     let number = |[red, green, blue, _]: &[u8; 4]| {
         let colour = [*red, *green, *blue];
         if colour != latest.0 {
@@ -122,7 +145,7 @@ fn palette_colour(number: i64) -> [u8; 3] {
 }
 
 /// The outlines of every label in a sequence of label masks, one picture after the other, under the labels as names: of grey pictures of 8 or 16
-/// bits their values, of those with the palette of PASCAL VOC and DAVIS the numbers of the colours. 0 is the ground.
+/// bits their values, of those with a palette, that of PASCAL VOC and DAVIS or one of the file (PNG), the numbers of the colours. 0 is the ground.
 #[derive(Debug)]
 pub struct LabelPictures {
     files: Vec<PathBuf>,
@@ -132,6 +155,7 @@ pub struct LabelPictures {
     summary: TracingSummary,
     in_parts: Option<LabelInParts>,
     left_out: Option<LabelLeftOut>,
+    void_in: Option<u64>,
 }
 
 /// A label that no outline was found of, beside others.
@@ -166,7 +190,8 @@ impl LabelPictures {
     pub fn new(files: Vec<PathBuf>, frames_per_second: Option<f64>, trace: TraceSettings) -> Result<Self, TraceError> {
         trace.check()?;
         let rate = frames_per_second.unwrap_or(DEFAULT_RATE);
-        Ok(Self { files, next: 0, rate, trace, summary: TracingSummary::default(), in_parts: None, left_out: None })
+        let (in_parts, left_out, void_in) = (None, None, None);
+        Ok(Self { files, next: 0, rate, trace, summary: TracingSummary::default(), in_parts, left_out, void_in })
     }
 
     /// Number of pictures.
@@ -197,6 +222,13 @@ impl LabelPictures {
     #[must_use]
     pub const fn left_out(&self) -> Option<&LabelLeftOut> {
         self.left_out.as_ref()
+    }
+
+    /// The number of the first mask so far that marks borders of its objects as void, with 255: half of such a border, from the middle on, is taken for
+    /// the object.
+    #[must_use]
+    pub const fn void_in(&self) -> Option<u64> {
+        self.void_in
     }
 
     fn read(&mut self, path: &Path) -> Result<LabelPicture, PictureError> {
@@ -253,6 +285,9 @@ impl Iterator for LabelPictures {
             Err(error) => return Some(Err(error)),
         };
         self.summary.last = Some((frame, time));
+        if picture.had_void {
+            self.void_in.get_or_insert(frame);
+        }
         let outlines = self.outlines(&picture, frame, time);
         let grid = self.trace.pixel_grid(picture.height as u32);
         let source = SourcePicture { frame, time, picture: Arc::new(picture.drawn()), grid };

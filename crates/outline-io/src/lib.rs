@@ -75,6 +75,7 @@ mod outline_columns;
 mod outline_file;
 mod outline_lists;
 mod outline_rows;
+mod palette;
 #[cfg(feature = "parquet")]
 mod parquet_batch;
 #[cfg(feature = "parquet")]
@@ -118,6 +119,7 @@ mod trace;
 mod trace_settings;
 mod traced_pictures;
 mod trackmate;
+mod void_border;
 mod whole_pixels;
 mod write_error;
 mod y4m;

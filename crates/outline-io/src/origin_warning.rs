@@ -18,17 +18,26 @@ pub enum OriginWarning {
     Interlaced,
     /// The pictures were taken in another order than their numbers have.
     FilesOutOfOrder,
+    /// A label is in several parts of about the same size, of which the largest is taken.
+    LabelInParts,
+    /// A label has no outline in a picture in which others have one.
+    LabelLeftOut,
+    /// Borders of labels are marked as void, so that nobody knows where in them the objects end.
+    VoidBorders,
 }
 
 impl OriginWarning {
     /// All of them, what makes outlines worthless first.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 9] = [
         Self::TracingDoubtful,
         Self::MovesBesideRest,
         Self::MovesBeside,
         Self::FilesOutOfOrder,
+        Self::LabelInParts,
+        Self::LabelLeftOut,
         Self::RateAssumed,
         Self::Interlaced,
+        Self::VoidBorders,
     ];
 
     /// A short name that stays the same.
@@ -41,11 +50,14 @@ impl OriginWarning {
             Self::RateAssumed => "rate_assumed",
             Self::Interlaced => "interlaced",
             Self::FilesOutOfOrder => "files_out_of_order",
+            Self::LabelInParts => "label_in_parts",
+            Self::LabelLeftOut => "label_left_out",
+            Self::VoidBorders => "void_borders",
         }
     }
 
     /// Its place in saved sets: the variants are numbered in the order in which they are declared, so a new one is declared last.
-    const fn bit(self) -> u8 {
+    const fn bit(self) -> u16 {
         1 << self as u8
     }
 }
@@ -65,6 +77,13 @@ impl fmt::Display for OriginWarning {
                 "the video is interlaced: every second line is of another moment, which frays the edges of what moves"
             }
             Self::FilesOutOfOrder => "the pictures were taken in another order than their numbers have",
+            Self::LabelInParts => {
+                "a label is in several parts, of which the largest is taken: another may be the largest in another picture"
+            }
+            Self::LabelLeftOut => "a label has no outline in a picture in which others have one",
+            Self::VoidBorders => {
+                "borders of objects are marked as void (255): outlines are laid along their middle, as nobody knows where in them the objects end"
+            }
         })
     }
 }
@@ -90,14 +109,14 @@ impl From<TracingWarning> for OriginWarning {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(from = "u8"))]
-pub struct OriginWarnings(u8);
+#[cfg_attr(feature = "serde", serde(from = "u16"))]
+pub struct OriginWarnings(u16);
 
 #[cfg(feature = "serde")]
-impl From<u8> for OriginWarnings {
+impl From<u16> for OriginWarnings {
     /// From the bits as they are saved, one for each variant of [`OriginWarning`] in the order of their declaration. Others are left out: they
     /// would be neither none nor any.
-    fn from(bits: u8) -> Self {
+    fn from(bits: u16) -> Self {
         let known = OriginWarning::ALL.into_iter().collect::<Self>();
         Self(bits & known.0)
     }

@@ -14,7 +14,7 @@ use crate::compressed_video::compressed_video;
 use crate::foreign_format::is_heic;
 use crate::jpeg_end::reaches_its_end;
 use crate::picture_error::{PictureError, PictureErrorKind};
-use crate::tiff_pages::has_several_pages;
+use crate::tiff_pages::{bits_of_single_sample, has_several_pages};
 
 /// Largest number of pixels accepted, 8192 x 8192: the program then needs less than 1.5 GiB in the worst case.
 pub(crate) const PIXEL_LIMIT: u64 = 1 << 26;
@@ -27,6 +27,9 @@ const LARGEST_PICTURE: u64 = DECODER_LIMIT / 2;
 
 /// Most bytes that the decoder may take for each pixel of a picture.
 const DECODER_LIMIT_OF_PIXEL: u64 = DECODER_LIMIT / PIXEL_LIMIT;
+
+/// Bits of the grey values of a TIFF that are read.
+const TIFF_BITS: [u64; 3] = [1, 8, 16];
 
 /// Most memory for what a PNG tells beside its pixels, in bytes: colour profiles of printers have some megabytes, histories of editors some
 /// tens.
@@ -130,9 +133,13 @@ fn decode_colours(source: &mut dyn Source) -> Result<(DynamicImage, Orientation)
     if let Some(format) = several_pictures(source, format, &limits)? {
         return Err(PictureErrorKind::SeveralPictures { format });
     }
+    let other_bits = if format == ImageFormat::Tiff { unread_bits(source)? } else { None };
     let mut reader = ImageReader::with_format(source, format);
     reader.limits(limits);
-    let mut decoder = reader.into_decoder().map_err(damaged)?;
+    let mut decoder = reader.into_decoder().map_err(|error| match (damaged(error), other_bits) {
+        (PictureErrorKind::UnsupportedKind(_), Some(bits)) => PictureErrorKind::TiffBits { bits },
+        (other, _) => other,
+    })?;
     // The header has been read, the pixels have not: nothing large is allocated yet.
     let (width, height) = decoder.dimensions();
     check_size(width, height)?;
@@ -178,6 +185,13 @@ fn several_pictures(
         (_, true) => Some("a TIFF of several pages"),
         _ => None,
     })
+}
+
+/// How many bits the grey values of a TIFF have, where it has no colours and these are none that are read. Leaves the source at its beginning.
+fn unread_bits(mut source: &mut dyn Source) -> Result<Option<u64>, PictureErrorKind> {
+    let bits = bits_of_single_sample(&mut source).filter(|bits| !TIFF_BITS.contains(bits));
+    source.rewind()?;
+    Ok(bits)
 }
 
 /// The limits of a file that begins so. That of a PNG is told by its size, since its colour profile may unpack to any.

@@ -153,6 +153,15 @@ pub enum PictureErrorKind {
     /// each ink.
     #[error("a picture of this kind is not read here: {0}")]
     UnsupportedKind(#[source] ImageError),
+    /// A TIFF whose grey values have another number of bits than those that are read.
+    #[error(
+        "a grey TIFF of {bits} bits a pixel is not read here, those of 1, 8 and 16 bits are: convert it, such as in Python with \
+         picture.astype('uint16'), grey values scaled to 0 to 65535 and labels as they are"
+    )]
+    TiffBits {
+        /// Its bits a pixel, whole numbers or floats.
+        bits: u64,
+    },
     /// The file ends early or contradicts itself.
     #[error("the picture is damaged: {0}")]
     Damaged(#[source] ImageError),

@@ -43,7 +43,7 @@ Examples:
   freeform simulate --shape glider --omega -1.05 --b 0,4 --output outlines.csv
   freeform identify outlines.csv --scale 0.1 --report report.html
   freeform simulate --seconds 5 | freeform identify - --format json
-  freeform outline mask-*.png --fps 25 | freeform identify -
+  freeform outline 'mask-*.png' --fps 25 | freeform identify -
 
 Exit status: 0 done; 1 input understood, but no result; 2 wrong usage or unreadable input.
 'freeform COMMAND --help' describes a command and its options.";

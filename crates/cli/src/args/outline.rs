@@ -6,7 +6,7 @@ use super::pictures::{PictureOptions, picture_inputs};
 
 const EXAMPLES: &str = "\
 Examples:
-  freeform outline mask-*.png --fps 25 --output outlines.csv
+  freeform outline 'mask-*.png' --fps 25 --output outlines.csv
   freeform outline frames/ --dark | freeform identify -
   freeform outline coco.json --fps 20 --output outlines.parquet
   freeform outline parts.gif --background median --objects all --overlay drawn.gif

@@ -29,7 +29,8 @@ time is told. 'freeform identify' prints this truth next to its result.";
 const PICTURES: &str = "\
 The folder gets \
 000000.png, 000001.png, ... and truth.csv, a row for each body in each picture: its middle in pixels (y upwards from the lower \
-left corner), its angle and omega (rad, positive clockwise), its velocity, and whether it is whole and seen.";
+left corner), its angle and omega (rad, positive clockwise), its velocity, whether it is whole and seen, and where its middle was in the first picture that \
+shows it whole. Bodies are numbered as in the scene, and by 'freeform identify' as they are found: the same body is where that tells v.";
 
 /// What stands behind the options: examples, shapes, the output, scenes.
 fn after_help() -> String {

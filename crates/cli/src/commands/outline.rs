@@ -73,10 +73,12 @@ fn trace_all(args: &OutlineArgs, mut input: Input, sink: &mut Sink) -> Result<Tr
         progress.advance();
         match item? {
             Item::Outline(frame, source) => {
-                if !std::mem::replace(&mut is_begun, true) {
-                    table.options.warnings = input.origin_warnings().into_iter().map(|(warning, _)| warning).collect();
-                }
-                table.write(&frame, input.told_by_table())?;
+                let warnings = if !std::mem::replace(&mut is_begun, true) || input.has_labels() {
+                    input.origin_warnings().into_iter().map(|(warning, _)| warning).collect()
+                } else {
+                    input.told_by_table()
+                };
+                table.write(&frame, warnings)?;
                 if let (Some(drawings), Some(source)) = (&mut drawings, &source) {
                     drawings.draw(source, &frame)?;
                 }
@@ -123,8 +125,8 @@ impl<'a> Table<'a> {
             deviation_column: args.deviations || input.has_deviation_column(),
             resolution: None,
             warnings: OriginWarnings::NONE,
-            // A table that is copied says it in its rows, which may be later ones than the first.
-            warning_column: input.has_warning_column(),
+            // A table that is copied says it in its rows, and a label may fall apart in a later mask than the first.
+            warning_column: input.has_warning_column() || input.has_labels(),
         };
         let (format, comments) = (TableFormat::of(&args.output), std::mem::take(&mut input.comments));
         Self { sink: Some(sink), writer: None, format, options, comments, outlines: 0 }
@@ -133,6 +135,7 @@ impl<'a> Table<'a> {
     /// Writes an outline, with what is known by now of how all were found.
     fn write(&mut self, frame: &OutlineFrame, warnings: OriginWarnings) -> Result<(), WriteError> {
         if let Some(sink) = self.sink.take() {
+            self.options.warnings = warnings;
             self.writer = Some(TableWriter::new(sink, self.format, self.options, &self.comments)?);
         }
         if let Some(writer) = &mut self.writer {

@@ -26,7 +26,11 @@ pub(super) fn write_pictures(args: &SimulateArgs, folder: &Path) -> Result<(), F
         let reason = "not empty, pictures go into a new or an empty folder";
         return Err(Failure::unusable(format_args!("{}: {reason}", folder.display())));
     }
-    let mut truth = format!("# {}\nframe,time,object,x,y,angle,omega,v1,v2,whole,seen\n", command_line());
+    let mut truth = format!(
+        "# {}\nframe,time,object,x,y,angle,omega,v1,v2,whole,seen,first_frame,first_x,first_y\n",
+        command_line()
+    );
+    let mut first_whole: Vec<Option<(usize, [f64; 2])>> = Vec::new();
     let progress = Progress::of_frames(Some(pictures.len() as u64), false);
     for picture in pictures.iter() {
         let extension = if args.jpeg.is_some() { "jpg" } else { "png" };
@@ -37,7 +41,16 @@ pub(super) fn write_pictures(args: &SimulateArgs, folder: &Path) -> Result<(), F
         for (object, body) in picture.bodies.iter().enumerate() {
             let BodyTruth { middle: [x, y], angle, omega, velocity: [v1, v2], is_whole, is_seen } = body;
             let SimulatedPicture { index, time, .. } = picture;
-            truth += &format!("{index},{time},{object},{x},{y},{angle},{omega},{v1},{v2},{is_whole},{is_seen}\n");
+            if first_whole.len() <= object {
+                first_whole.resize(object + 1, None);
+            }
+            if *is_whole && *is_seen {
+                first_whole[object].get_or_insert((index, body.middle));
+            }
+            let first =
+                first_whole[object].map_or_else(|| ",,".to_owned(), |(frame, [x, y])| format!("{frame},{x},{y}"));
+            truth +=
+                &format!("{index},{time},{object},{x},{y},{angle},{omega},{v1},{v2},{is_whole},{is_seen},{first}\n");
         }
         progress.advance();
     }

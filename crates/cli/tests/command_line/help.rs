@@ -10,6 +10,17 @@ fn every_command_has_a_help_with_examples() {
 }
 
 #[test]
+fn patterns_of_pictures_that_follow_each_other_stand_in_quotes_so_that_no_shell_sorts_them() {
+    let helps = ["--help", "identify --help", "track --help", "outline --help"].map(|wanted| succeed(wanted, ""));
+    let examples: Vec<&str> =
+        helps.iter().flat_map(|help| help.lines()).filter(|line| line.starts_with("  freeform ")).collect();
+    let patterns: Vec<&str> =
+        examples.iter().flat_map(|line| line.split(' ')).filter(|word| word.contains('*')).collect();
+    assert!(patterns.len() > 2, "{examples:#?}");
+    assert!(patterns.iter().all(|word| word.starts_with('\'') && word.ends_with('\'')), "{patterns:?}");
+}
+
+#[test]
 fn the_help_reads_as_it_should() {
     insta::assert_snapshot!("help", succeed("--help", ""));
     insta::assert_snapshot!("help_evaluate", succeed("evaluate --help", ""));

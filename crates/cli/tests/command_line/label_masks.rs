@@ -208,7 +208,7 @@ fn flat_areas_that_touch_are_told_of_where_their_values_are_no_small_numbers() {
     };
     write(folder.path(), |frame| GrayImage::from_fn(SIZE[0], SIZE[1], |x, y| Luma([value(x, y, frame)])).into());
     let told = stderr(&run(&format!("outline {} --fps 25", folder.path().display()), ""));
-    assert!(told.contains("flat areas of 2 grey values") && told.contains("--objects labels"), "{told}");
+    assert!(told.contains("flat areas of 2 values") && told.contains("--objects labels"), "{told}");
     let rows = succeed(&format!("outline {} --fps 25 --objects labels", folder.path().display()), "");
     assert!(["120", "240"].iter().all(|label| rows.contains(&format!(",{label},"))), "{rows:.200}");
 }
@@ -220,6 +220,120 @@ fn a_label_in_two_parts_is_told_of() {
     write_masks(folder.path(), 8, &[1, 2, 1]);
     let told = stderr(&run(&format!("outline {} --fps 25", folder.path().display()), ""));
     assert!(told.contains("frame 0, label 1: the largest part, of ") && told.contains("a label of its own"), "{told}");
+}
+
+/// Codes in the column `warning` of a table, of each frame.
+fn codes_of_frames(table: &str) -> Vec<(u32, String)> {
+    let mut lines = table.lines();
+    let header: Vec<&str> = lines.next().expect("a header").split(',').collect();
+    let column = |name: &str| header.iter().position(|column| *column == name).expect("the column");
+    let (frame, warning) = (column("frame"), column("warning"));
+    let mut codes: Vec<(u32, String)> = lines
+        .map(|line| line.split(',').collect::<Vec<_>>())
+        .map(|cells| (cells[frame].parse().expect("a number"), cells[warning].to_owned()))
+        .collect();
+    codes.dedup();
+    codes
+}
+
+#[test]
+fn what_is_wrong_with_labels_stands_in_their_table_from_the_mask_on_that_shows_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // From the fifth mask on the third body has the label of the first; in the ninth a speck has one.
+    let value = |x: u32, y: u32, frame: u32| match body(x, y, frame) {
+        Some(2) if frame < 4 => 0,
+        Some(body) => [1, 2, 1][body],
+        None => 3 * u8::from(frame == 8 && (120..126).contains(&x) && (150..156).contains(&y)),
+    };
+    write(folder.path(), |frame| GrayImage::from_fn(SIZE[0], SIZE[1], |x, y| Luma([value(x, y, frame)])).into());
+    let input = folder.path().display();
+    let table = succeed(&format!("outline {input} --fps 25"), "");
+    let codes = codes_of_frames(&table);
+    let expected = |frame: u32| match frame {
+        0..4 => "",
+        4..8 => "label_in_parts",
+        _ => "label_in_parts label_left_out",
+    };
+    assert!(
+        codes.iter().map(|(frame, code)| (*frame, code.as_str())).eq((0..FRAMES).map(|k| (k, expected(k)))),
+        "{codes:?}"
+    );
+    // It is heard again where the table is read, and stands in the document of the masks themselves.
+    for document in [json(&succeed("identify - --json --quiet", &table)), identified(folder.path(), "")] {
+        let codes: Vec<&str> = document["warnings"]
+            .as_array()
+            .expect("warnings")
+            .iter()
+            .filter_map(|told| told["code"].as_str())
+            .collect();
+        assert_eq!(codes, ["label_in_parts", "label_left_out"]);
+    }
+}
+
+/// Writes bytes of a PNG of places in a palette.
+fn write_indexed(path: &Path, palette: &[[u8; 3]], index: impl Fn(u32, u32) -> u8) {
+    let mut encoder = png::Encoder::new(std::fs::File::create(path).expect("a file"), SIZE[0], SIZE[1]);
+    encoder.set_color(png::ColorType::Indexed);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_palette(palette.concat());
+    let places: Vec<u8> =
+        (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y))).map(|(x, y)| index(x, y)).collect();
+    encoder.write_header().and_then(|mut writer| writer.write_image_data(&places)).expect("a picture");
+}
+
+#[test]
+fn colours_of_another_palette_are_numbers_where_it_is_asked_for() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let palette = [[0, 0, 0], [230, 25, 75], [60, 180, 75], [0, 130, 200]];
+    for frame in 0..FRAMES {
+        let path = folder.path().join(format!("m{frame}.png"));
+        write_indexed(&path, &palette, |x, y| body(x, y, frame).map_or(0, |body| [3, 1, 2][body]));
+    }
+    let found = omegas(&identified(folder.path(), "--objects labels"));
+    for (label, (truth, ..)) in ["3", "1", "2"].iter().zip(BODIES) {
+        let (_, omega) = found.iter().find(|(name, _)| name == label).expect("the label");
+        assert!((omega - truth).abs() < 0.05, "{found:?}");
+    }
+    // A drawing may have a palette too: it is told of, and traced as it is.
+    let told = stderr(&run(&format!("outline {} --fps 25", folder.path().display()), ""));
+    assert!(told.contains("flat areas of 3 values") && !told.contains("label masks: every value"), "{told}");
+}
+
+#[test]
+fn borders_that_are_marked_as_void_belong_to_their_objects_up_to_the_middle_and_are_told_of() {
+    let void = |x: u32, y: u32, frame: u32| {
+        let own = body(x, y, frame);
+        let near = (-2..=2_i32).flat_map(|dx| (-2..=2_i32).map(move |dy| (dx, dy)));
+        let differs =
+            |(dx, dy): (i32, i32)| body(x.saturating_add_signed(dx), y.saturating_add_signed(dy), frame) != own;
+        near.filter(|(dx, dy)| dx * dx + dy * dy <= 5).any(differs)
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let value = |x: u32, y: u32, frame: u32| {
+        if void(x, y, frame) { 255 } else { body(x, y, frame).map_or(0, |body| [1, 2, 3][body]) }
+    };
+    write(folder.path(), |frame| GrayImage::from_fn(SIZE[0], SIZE[1], |x, y| Luma([value(x, y, frame)])).into());
+    let plain = tempfile::tempdir().expect("a folder");
+    write_masks(plain.path(), 8, &[1, 2, 3]);
+    let area = |folder: &Path| {
+        let table = succeed(&format!("outline {} --fps 25", folder.display()), "");
+        let points =
+            table.lines().filter(|line| line.starts_with("0,")).map(|line| line.split(',').collect::<Vec<_>>());
+        let points: Vec<(f64, f64)> = points
+            .filter(|cells| cells[4] == "1")
+            .map(|cells| (cells[2].parse().expect("x"), cells[3].parse().expect("y")))
+            .collect();
+        let pairs = points.iter().zip(points.iter().cycle().skip(1));
+        0.5 * pairs.map(|((x, y), (u, v))| x * v - u * y).sum::<f64>().abs()
+    };
+    let [with_void, without] = [area(folder.path()), area(plain.path())];
+    assert!((with_void / without - 1.0).abs() < 0.03, "{with_void} {without}");
+    let document = identified(folder.path(), "");
+    let found = omegas(&document);
+    assert_eq!(found.len(), 3, "{found:?}");
+    assert_eq!(document["warnings"][0]["code"], "void_borders");
+    let told = stderr(&run(&format!("outline {} --fps 25 --objects labels", folder.path().display()), ""));
+    assert!(told.contains("marked as void (255)"), "{told}");
 }
 
 #[test]

@@ -79,6 +79,59 @@ fn true_omegas(frames: &str) -> [f64; 2] {
 }
 
 #[test]
+fn nothing_moves_beside_a_gear_that_turns_about_a_middle_that_hardly_moves() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for seed in [3, 4, 7] {
+        let frames = format!("{}/{seed}", folder.path().to_str().expect("UTF-8"));
+        succeed(&format!("simulate --pictures {frames} --seed {seed} --seconds 1"), "");
+        let document = json(&succeed(&format!("identify {frames} --fps 30 --quiet --json"), ""));
+        assert!(document["warnings"].is_null(), "{seed}: {}", document["warnings"]);
+    }
+}
+
+#[test]
+fn where_each_body_is_first_seen_whole_tells_which_object_it_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let frames = format!("{}/belt", folder.path().to_str().expect("UTF-8"));
+    succeed(&format!("simulate --pictures {frames} --scene belt --seed 3 --seconds 1"), "");
+    let truth = std::fs::read_to_string(format!("{frames}/truth.csv")).expect("the truth");
+    let mut rows =
+        truth.lines().skip_while(|line| line.starts_with('#')).map(|line| line.split(',').collect::<Vec<_>>());
+    let header = rows.next().expect("a header");
+    assert_eq!(header[header.len() - 3..], ["first_frame", "first_x", "first_y"]);
+    // The last row of each body.
+    let mut first_seen: Vec<Vec<f64>> = Vec::new();
+    let rows: Vec<Vec<&str>> = rows.collect();
+    let last = rows[rows.len() - 1][0];
+    for row in rows.iter().filter(|row| row[0] == last) {
+        let cells: Option<Vec<f64>> = row[row.len() - 3..].iter().map(|cell| cell.parse().ok()).collect();
+        first_seen.extend(cells);
+    }
+    assert!(first_seen.len() > 3 && first_seen.iter().any(|first| first[0] > 0.0), "{first_seen:?}");
+    let table = succeed(&format!("outline {frames} --fps 30 --objects all --light --quiet"), "");
+    let mut objects = Vec::new();
+    for first in &first_seen {
+        let mut places: std::collections::BTreeMap<&str, Vec<[f64; 2]>> = std::collections::BTreeMap::new();
+        for line in table.lines().skip_while(|line| !line.starts_with(char::is_numeric)) {
+            let cells: Vec<&str> = line.split(',').collect();
+            if cells[0].parse() == Ok(first[0]) {
+                places.entry(cells[4]).or_default().push([2, 3].map(|k| cells[k].parse().expect("a number")));
+            }
+        }
+        let is_near = |points: &&Vec<[f64; 2]>| {
+            let middle = [0, 1].map(|k| points.iter().map(|point| point[k]).sum::<f64>() / points.len() as f64);
+            (middle[0] - first[1]).hypot(middle[1] - first[2]) < 15.0
+        };
+        let near: Vec<&str> = places.iter().filter(|(_, points)| is_near(points)).map(|(name, _)| *name).collect();
+        assert_eq!(near.len(), 1, "{first:?}");
+        objects.extend(near);
+    }
+    objects.sort_unstable();
+    objects.dedup();
+    assert_eq!(objects.len(), first_seen.len(), "each body is an object of its own");
+}
+
+#[test]
 fn discs_that_roll_tell_their_turn_by_their_holes_and_not_without_them() {
     let folder = tempfile::tempdir().expect("a folder");
     let base = folder.path().to_str().expect("UTF-8");

@@ -4,6 +4,7 @@ use nalgebra::{Point2, Vector2};
 use super::chains::Chain;
 use super::sight::Sight;
 use super::tuning::beside as tuning;
+use super::turning::Reach;
 use crate::affine_moment_invariants::is_within;
 
 /// What is seen to change besides what is traced.
@@ -54,7 +55,8 @@ impl Beside {
         self.others.iter().flatten().flatten().filter(move |sight| sight.frame == frame)
     }
 
-    /// Whether another thing stands still while this one moves, which then is no part of it.
+    /// Whether another thing stands still while this one moves, which then is no part of it. The outline of a wheel hardly moves as it turns, but does not
+    /// stand still: its teeth are parts of it, and look as if they went anywhere, being alike.
     fn stands(&self, other: &Sight, [before, _, after]: &Chain) -> bool {
         let seen = |frame: u64| {
             let far = |sight: &&Sight| (sight.centre - other.centre).norm();
@@ -62,7 +64,12 @@ impl Beside {
         };
         let way = (after.centre - before.centre).norm();
         let moved = |(a, b): (&Sight, &Sight)| (a.centre - b.centre).norm().max(a.unlike(b));
-        seen(before.frame).zip(seen(after.frame)).is_some_and(|seen| moved(seen) < tuning::STANDS * way)
+        let has_turned = |(first, last): (&Sight, &Sight)| {
+            Reach::of(first).zip(Reach::of(last)).is_some_and(|(first, last)| first.has_turned_to(&last))
+        };
+        seen(before.frame)
+            .zip(seen(after.frame))
+            .is_some_and(|seen| moved(seen) < tuning::STANDS * way && !has_turned(seen))
     }
 }
 

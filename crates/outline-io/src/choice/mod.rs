@@ -11,6 +11,7 @@ mod sight;
 mod ties;
 mod trial;
 mod tuning;
+mod turning;
 mod warning;
 
 use std::sync::Arc;

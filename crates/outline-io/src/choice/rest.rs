@@ -1,5 +1,6 @@
 //! Whether what a way finds rests.
 use super::sight::Sight;
+use super::turning::turns;
 use crate::edges::median;
 
 /// Pictures so far from each other show whether something moves.
@@ -20,7 +21,8 @@ fn moved(a: &Sight, b: &Sight) -> f64 {
 }
 
 /// Whether what is seen rests: from picture to picture it hardly moves, pictures far from each other show it where it was, and none shows it
-/// far from where it was first: what swings slowly comes back too. Or wherever it looks the same it lies in the same place.
+/// far from where it was first: what swings slowly comes back too. Or wherever it looks the same it lies in the same place. What turns in its
+/// place does not rest, however little that moves its outline.
 pub(super) fn rests(sights: &[Sight], factor: f64) -> bool {
     let near = median(sights.windows(2).filter(|w| w[0].frame + 1 == w[1].frame).map(|w| moved(&w[0], &w[1])));
     let Some(near) = near else { return false };
@@ -30,7 +32,7 @@ pub(super) fn rests(sights: &[Sight], factor: f64) -> bool {
     }));
     let hardly = (1.0 / factor).max(0.02 * median(sights.iter().map(Sight::size)).unwrap_or(0.0));
     let is_steady = again.is_some_and(|again| near < hardly && again < 1.5 * near + 0.5 / factor);
-    is_steady && (movement(sights) < FAR * hardly || is_where_it_was(sights, hardly))
+    is_steady && (movement(sights) < FAR * hardly || is_where_it_was(sights, hardly)) && !turns(sights)
 }
 
 /// Whether a thing of which now more is seen and now less, as what is around it belongs to its outline or not, lies in one place wherever it

@@ -50,6 +50,13 @@ pub(super) mod beside {
     pub(in crate::choice) const STANDS: f64 = 0.2;
 }
 
+/// What turns in its place.
+pub(super) mod turning {
+    /// An outline has turned where it is off by less than this share of what it is off without the turn, root mean square: points are off by some
+    /// tenths of a pixel, teeth that have gone on by some pixels, and what goes over the edge of something at rest leaves all else where it is.
+    pub(in crate::choice) const TURNED: f64 = 0.5;
+}
+
 /// Which of several ways is taken that do equally well.
 pub(super) mod ties {
     /// Ways do equally well where what they are sorted by differs by less than this share: another sample of the same pictures changes it by as much.

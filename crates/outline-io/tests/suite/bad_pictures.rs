@@ -56,6 +56,42 @@ fn files_that_are_no_pictures_are_told_apart() {
 }
 
 #[test]
+fn a_grey_tiff_of_32_bits_is_refused_with_what_is_read_instead() {
+    // Floats, whole numbers with and without sign; of the same without bits that are wrong nothing is refused.
+    for (bits, format) in [(32_u16, 3_u16), (32, 2), (32, 1), (64, 3), (8, 1)] {
+        let entry = |tag: u16, kind: u16, value: u32| {
+            [&tag.to_le_bytes()[..], &kind.to_le_bytes(), &1_u32.to_le_bytes(), &value.to_le_bytes()].concat()
+        };
+        let bytes = 4 * 3 * u32::from(bits) / 8;
+        let entries = [
+            entry(256, 3, 4),
+            entry(257, 3, 3),
+            entry(258, 3, bits.into()),
+            entry(259, 3, 1),
+            entry(262, 3, 1),
+            entry(273, 4, 200),
+            entry(277, 3, 1),
+            entry(278, 3, 3),
+            entry(279, 4, bytes),
+            entry(339, 3, format.into()),
+        ];
+        let mut tiff = [&b"II*\0\x08\0\0\0"[..], &[entries.len() as u8, 0], &entries.concat(), &[0; 4]].concat();
+        tiff.resize(200 + bytes as usize, 0);
+        if bits == 8 {
+            assert_eq!(decode(&tiff).expect("a picture").dimensions(), (4, 3));
+            continue;
+        }
+        let refused = decode(&tiff).expect_err("too many bits");
+        assert!(
+            matches!(refused, PictureErrorKind::TiffBits { bits: told } if told == u64::from(bits)),
+            "{bits}, {format}: {refused}"
+        );
+        let told = refused.to_string();
+        assert!(told.contains("those of 1, 8 and 16 bits are"), "{told}");
+    }
+}
+
+#[test]
 fn a_picture_that_is_too_large_is_refused_before_its_pixels_are_read() {
     let mut header = Vec::from(b"\x89PNG\r\n\x1a\n");
     let mut chunk = Vec::from(b"IHDR");

@@ -101,6 +101,28 @@ fn a_toothed_wheel_that_turns_in_its_place_is_followed_and_not_its_teeth() {
 }
 
 #[test]
+fn teeth_of_a_wheel_that_turns_about_a_middle_that_hardly_moves_are_nothing_that_moves_beside_it() {
+    for (turn, step) in [(0.034, 0.2), (0.023, 0.05), (-0.06, 0.3)] {
+        let wheel = |frame: u32| {
+            picture(frame, move |x, y| {
+                let frame = f64::from(frame);
+                let (x, y) = (x - 160.0 - step * frame, y - 120.0 + 0.5 * step * frame);
+                let along = y.atan2(x) - turn * frame;
+                // One of 17 is missing.
+                let is_tooth =
+                    (17.0 * along).cos() > 0.0 && !(0.0..0.3).contains(&along.rem_euclid(std::f64::consts::TAU));
+                (x.hypot(y) - if is_tooth { 72.0 } else { 64.0 }).clamp(-1.0, 1.0)
+            })
+        };
+        let choice = choice(&(0..24).map(wheel).collect::<Vec<_>>());
+        let best = choice.best().expect("a way");
+        assert!(!matches!(best.tracing.way, TracingWay::Median(_)) && !best.rests, "{turn}: {best:?}");
+        let warned: Vec<TracingWarning> = choice.warnings().collect();
+        assert!(warned.is_empty(), "{turn}: {warned:?}");
+    }
+}
+
+#[test]
 fn a_disc_that_swings_slowly_does_not_rest() {
     // From picture to picture by less than it would be seen to move, and back to where it was.
     for amplitude in [0.0, 7.0] {
