@@ -144,6 +144,11 @@ impl View<'_> {
         FirstPose { look, mean_square, innovations: self.innovations_in(frame, pose) }
     }
 
+    /// As [`negative_log_likelihoods`](Self::negative_log_likelihoods), of one pose alone.
+    pub(crate) fn negative_log_likelihood_of_first(&self, first: &FirstPose) -> NegativeLogLikelihood {
+        self.of_all(&[&first.innovations])[0]
+    }
+
     /// As [`negative_log_likelihoods`](Self::negative_log_likelihoods), of a pose and those that are compared with it, of the points that it has been
     /// looked at by. What a first look finds so many times worse than that, which is most of many poses, is not measured: its squares are those of
     /// the first look.
