@@ -101,10 +101,10 @@ impl View<'_> {
         let expected = self.belief.information.cells.expected_with(state);
         shifts.clear();
         shifts.extend(frame.shifts.iter().zip(expected).map(|(shift, expected)| shift - expected));
-        let innovations = self.innovations(frame, &shifts);
-        let likelihood = of_innovations(innovations, self.comparable_noise(), self.noise.correlation());
+        let mut sums = Sums::by_scale(self.comparable_noise());
+        self.for_each_innovation(frame, &shifts, |innovation| sums.add(innovation));
         frame.values = shifts;
-        likelihood
+        sums.likelihood(self.noise.correlation())
     }
 
     /// Of the loaded points in several poses. Where the map leaves more than the noise in the best of them, as one of few points does,
@@ -122,7 +122,8 @@ impl View<'_> {
     fn innovations_in(&self, frame: &mut Frame, pose: &Matrix3<f64>) -> Innovations {
         frame.clear_shifts(self.map.cells().len());
         self.measure_by_columns(frame, pose, &[], Pass::First);
-        let of_points: Vec<_> = self.innovations(frame, &frame.shifts).collect();
+        let mut of_points = Vec::with_capacity(frame.points.len());
+        self.for_each_innovation(frame, &frame.shifts, |innovation| of_points.push(innovation));
         let mut sizes: Vec<f64> = of_points.iter().flatten().map(|innovation| innovation.abs()).collect();
         let scale = median(&mut sizes).map_or(f64::INFINITY, |m| MEDIAN_TO_DEVIATION * m);
         Innovations { of_points, scale }
@@ -133,7 +134,7 @@ impl View<'_> {
         let scale = all.iter().map(|innovations| innovations.scale).fold(f64::INFINITY, f64::min);
         let scale = if scale.is_finite() { scale.max(self.comparable_noise()) } else { self.comparable_noise() };
         let correlation = self.noise.correlation();
-        all.iter().map(|list| of_innovations(list.of_points.iter().copied(), scale, correlation)).collect()
+        all.iter().map(|list| Sums::of(&list.of_points, scale).likelihood(correlation)).collect()
     }
 
     /// What other poses are compared with, of the loaded points.
@@ -142,6 +143,11 @@ impl View<'_> {
         let mut numbers = vec![0; look.points.len()];
         let mean_square = self.rough_mean_square(&look, pose, f64::INFINITY, &mut numbers);
         FirstPose { look, mean_square, innovations: self.innovations_in(frame, pose) }
+    }
+
+    /// As [`negative_log_likelihoods`](Self::negative_log_likelihoods), of one pose alone.
+    pub(crate) fn negative_log_likelihood_of_first(&self, first: &FirstPose) -> NegativeLogLikelihood {
+        self.of_all(&[&first.innovations])[0]
     }
 
     /// As [`negative_log_likelihoods`](Self::negative_log_likelihoods), of a pose and those that are compared with it, of the points that it has been
@@ -230,20 +236,21 @@ impl View<'_> {
         (sum + of_unknown(unknown, count * self.noise.correlation())) / count
     }
 
-    /// With offsets moved by these from where they were known.
-    fn innovations<'a>(&'a self, frame: &'a Frame, shifts: &'a [f64]) -> impl Iterator<Item = Option<f64>> {
+    /// Visits the points one after the other, with offsets moved by these from where they were known.
+    #[inline(always)]
+    fn for_each_innovation(&self, frame: &Frame, shifts: &[f64], mut visit: impl FnMut(Option<f64>)) {
         let Frame { columns, deviations, pieces, .. } = frame;
         let ratios = deviations.ratios();
-        let ratio = move |i: usize| ratios.map_or(1.0, |ratios| ratios[i]);
         // A pose in which no piece shows any of the outline explains nothing.
         let is_shown = pieces.iter().any(|piece| !self.lies_apart(frame, piece));
-        let of_piece =
-            move |piece: &Piece| std::iter::repeat_n(is_shown && self.lies_apart(frame, piece), piece.range().len());
-        let points = columns.points().zip(pieces.iter().flat_map(of_piece)).enumerate();
-        points.map(move |(i, (point, lies_apart))| match lies_apart {
-            true => None,
-            false => self.innovation_of(&point, ratio(i), shifts),
-        })
+        let mut points = columns.points();
+        for piece in pieces {
+            let lies_apart = is_shown && self.lies_apart(frame, piece);
+            for (i, point) in piece.range().zip(&mut points) {
+                let ratio = ratios.map_or(1.0, |ratios| ratios[i]);
+                visit(if lies_apart { None } else { self.innovation_of(&point, ratio, shifts) });
+            }
+        }
     }
 
     /// Whether an open piece of a contour shows nothing of an outline that has ends: it may be a part of it that has been hidden so far.
@@ -253,6 +260,7 @@ impl View<'_> {
 
     /// Distance of a point from the outline as it was known, as if that were exact and the point a good one; `None` where nothing was
     /// known. `ratio` is its deviation over that of a good point.
+    #[inline(always)]
     fn innovation_of(&self, m: &PointOnCell, ratio: f64, shifts: &[f64]) -> Option<f64> {
         let own = self.belief.information.cells.own().get(m.cell).copied().filter(|own| *own > 0.0)?;
         let variance = ratio * ratio + m.by_offset * m.by_offset / own;
@@ -292,23 +300,42 @@ impl FirstLook {
     }
 }
 
-fn of_innovations(
-    innovations: impl Iterator<Item = Option<f64>>,
+/// Sums over the innovations of the points of a frame.
+pub(super) struct Sums {
     scale: f64,
-    correlation: f64,
-) -> NegativeLogLikelihood {
-    let square = |innovation: f64| (innovation / scale).powi(2).min(tuning::LARGEST * tuning::LARGEST);
-    let (mut points, mut known, mut unknown) = (0.0, 0.0, 0.0);
-    for innovation in innovations {
-        points += 1.0;
+    points: f64,
+    /// Squares in this scale.
+    known: f64,
+    unknown: f64,
+}
+
+impl Sums {
+    /// Over none.
+    fn by_scale(scale: f64) -> Self {
+        Self { scale, points: 0.0, known: 0.0, unknown: 0.0 }
+    }
+
+    pub(super) fn of(innovations: &[Option<f64>], scale: f64) -> Self {
+        let mut sums = Self::by_scale(scale);
+        innovations.iter().for_each(|innovation| sums.add(*innovation));
+        sums
+    }
+
+    #[inline(always)]
+    fn add(&mut self, innovation: Option<f64>) {
+        self.points += 1.0;
         match innovation {
-            Some(innovation) => known += square(innovation),
-            None => unknown += 1.0,
+            Some(innovation) => self.known += (innovation / self.scale).powi(2).min(tuning::LARGEST * tuning::LARGEST),
+            None => self.unknown += 1.0,
         }
     }
-    let weighted = points * correlation;
-    let squares = known + of_unknown(unknown, weighted);
-    NegativeLogLikelihood { squares, of_path: 0.0, points, weighted }
+
+    pub(super) fn likelihood(&self, correlation: f64) -> NegativeLogLikelihood {
+        let Self { points, known, unknown, .. } = *self;
+        let weighted = points * correlation;
+        let squares = known + of_unknown(unknown, weighted);
+        NegativeLogLikelihood { squares, of_path: 0.0, points, weighted }
+    }
 }
 
 /// Squares that stand for so many points where nothing is known, of points that count for so many. Each counts as one on the outline does, and for
@@ -332,54 +359,5 @@ impl NegativeLogLikelihood {
     /// Whether no number is NaN.
     pub(crate) fn is_valid(&self) -> bool {
         ![self.squares, self.of_path, self.points, self.weighted].iter().any(|number| number.is_nan())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use rand::SeedableRng as _;
-    use rand_chacha::ChaCha8Rng;
-    use rand_distr::{Distribution as _, StandardNormal};
-
-    use super::*;
-
-    #[test]
-    fn points_where_nothing_is_known_speak_against_a_pose_but_never_rule_it_out() {
-        for points in [40_u32, 400, 4000] {
-            let with_unknown = |unknown: u32| {
-                let innovations = (0..points).map(|i| (i >= unknown).then_some(1.0));
-                of_innovations(innovations, 1.0, 1.0)
-            };
-            let [none, few, most, all] = [0, 1, points / 2, points].map(with_unknown);
-            assert!(none.all() < few.all() && few.all() < most.all() && most.all() <= all.all(), "{points}");
-            assert!(
-                !all.is_worse_than(&none) && all.is_worse_by(0.9 * tuning::MOST_AGAINST * tuning::SIGNIFICANT, &none),
-                "{points}"
-            );
-            // Outliers in their place do.
-            let off = (0..points).map(|i| Some(if i < points / 2 { 9.0 } else { 1.0 }));
-            let off = of_innovations(off, 1.0, 1.0);
-            assert!(off.is_worse_than(&none), "{points}");
-        }
-    }
-
-    #[test]
-    fn the_variance_of_a_difference_of_squares_is_that_of_points_that_share_half_their_noise() {
-        let mut rng = ChaCha8Rng::seed_from_u64(1);
-        let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
-        let (points, runs) = (50, 2000);
-        let (mut sum, mut worse) = (0.0, 0);
-        for _ in 0..runs {
-            let mut poses = [NegativeLogLikelihood::of_squares(0.0, f64::from(points)); 2];
-            for _ in 0..points {
-                let shared = normal();
-                poses.iter_mut().for_each(|pose| pose.squares += 0.5 * (shared + normal()).powi(2));
-            }
-            sum += (poses[0].squares - poses[1].squares).powi(2);
-            worse += usize::from(poses[0].is_worse_than(&poses[1]));
-        }
-        let variance = sum / f64::from(runs * points);
-        assert!((variance / tuning::VARIANCE - 1.0).abs() < 0.1, "{variance}");
-        assert_eq!(worse, 0);
     }
 }

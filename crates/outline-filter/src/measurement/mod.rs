@@ -8,6 +8,8 @@ mod lattice;
 #[cfg(test)]
 mod lattice_tests;
 mod likelihood;
+#[cfg(test)]
+mod likelihood_tests;
 mod linearisation;
 mod noise;
 mod normal_consistency;

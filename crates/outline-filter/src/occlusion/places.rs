@@ -79,9 +79,12 @@ impl Places {
         (0..self.len()).map(|i| self.point(i))
     }
 
-    /// The place so many after another one, or before it, all round.
+    /// The place so many after another one, or before it, all round: fewer than there are.
     fn round(&self, i: usize, by: isize) -> Point2<f64> {
-        self.point((i as isize + by).rem_euclid(self.len() as isize) as usize)
+        let (at, count) = (i as isize + by, self.len() as isize);
+        // Less than a round off, where a remainder would be most of the work.
+        let at = if at < 0 { at + count } else { at };
+        self.point((if at < count { at } else { at - count }) as usize)
     }
 
     pub(super) fn centre(&self) -> Point2<f64> {
@@ -120,28 +123,43 @@ impl Places {
 
     pub(super) fn nearest(&self, p: &Point2<f64>) -> Foot {
         let i = self.nearest_place(p);
-        let before = (i + self.len() - 1) % self.len();
+        let before = if i > 0 { i - 1 } else { self.len() - 1 };
         let [first, second] = [before, i].map(|side| self.foot_on(side, p));
         if first.distance < second.distance { first } else { second }
     }
 
+    /// The first of the places that no other one is nearer than.
     fn nearest_place(&self, p: &Point2<f64>) -> usize {
         const LANES: usize = 8;
-        let least = vectorised(
+        let square = |x: f64, y: f64| (x - p.x) * (x - p.x) + (y - p.y) * (y - p.y);
+        let (of_x, last_x) = self.x.as_chunks::<LANES>();
+        let (of_y, last_y) = self.y.as_chunks::<LANES>();
+        // Of each lane, with the chunk that it was found in.
+        let (least, chunks) = vectorised(
             #[inline(always)]
             || {
-                let mut least = [f64::INFINITY; LANES];
-                for (x, y) in self.x.chunks(LANES).zip(self.y.chunks(LANES)) {
-                    for ((least, x), y) in least.iter_mut().zip(x).zip(y) {
-                        let square = (x - p.x) * (x - p.x) + (y - p.y) * (y - p.y);
-                        *least = if square < *least { square } else { *least };
+                let (mut least, mut chunks) = ([f64::INFINITY; LANES], [0_u64; LANES]);
+                for (chunk, (x, y)) in (0..).zip(of_x.iter().zip(of_y)) {
+                    for lane in 0..LANES {
+                        let square = (x[lane] - p.x) * (x[lane] - p.x) + (y[lane] - p.y) * (y[lane] - p.y);
+                        let is_nearer = square < least[lane];
+                        least[lane] = if is_nearer { square } else { least[lane] };
+                        chunks[lane] = if is_nearer { chunk } else { chunks[lane] };
                     }
                 }
-                least.into_iter().fold(f64::INFINITY, f64::min)
+                (least, chunks)
             },
         );
-        let square = |i: &usize| (self.x[*i] - p.x) * (self.x[*i] - p.x) + (self.y[*i] - p.y) * (self.y[*i] - p.y);
-        (0..self.len()).find(|i| square(i) <= least).unwrap_or(0)
+        let of_lanes = least.into_iter().zip(chunks).enumerate();
+        let of_lanes = of_lanes.map(|(lane, (square, chunk))| (square, LANES * chunk as usize + lane));
+        let of_last = last_x.iter().zip(last_y).zip(LANES * of_x.len()..).map(|((x, y), i)| (square(*x, *y), i));
+        let mut nearest = (f64::INFINITY, 0);
+        for (square, i) in of_lanes.chain(of_last) {
+            if square < nearest.0 || square == nearest.0 && i < nearest.1 {
+                nearest = (square, i);
+            }
+        }
+        nearest.1
     }
 
     fn foot_on(&self, side: usize, p: &Point2<f64>) -> Foot {
@@ -232,6 +250,19 @@ mod tests {
             let least = (0..places.len()).map(|side| places.foot_on(side, &p).distance).fold(f64::INFINITY, f64::min);
             assert!((foot.distance - least).abs() < 1e-12, "{p}");
             assert!(((p - foot.point).norm() - foot.distance).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn of_places_that_are_equally_near_the_first_is_the_nearest() {
+        for count in [24, 31, 32, 37, 128] {
+            let far = |i: usize| if i % 5 == 3 { 1.0 } else { 2.0 + i as f64 };
+            let places = Places { x: (0..count).map(far).collect(), y: vec![0.0; count], points_each: 1 };
+            assert_eq!(places.nearest_place(&Point2::origin()), 3, "{count}");
+            for i in 0..count {
+                let nearest = places.nearest_place(&Point2::new(far(i), 0.1));
+                assert_eq!(nearest, if i % 5 == 3 { 3 } else { i }, "{count}");
+            }
         }
     }
 

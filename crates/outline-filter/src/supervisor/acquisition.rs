@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     map::TurnEvent,
-    measurement::{NegativeLogLikelihood, Tolerance},
+    measurement::{FirstPose, NegativeLogLikelihood, Tolerance},
     search::{Extent, Landmarks, RegisteredPose, Registration, symmetry_order},
     track::{Comparison, Doubt, Outcome, Track},
     tuning::{
@@ -190,14 +190,14 @@ impl MotionFilter {
         registration: &Registration,
     ) -> Vec<Candidate> {
         self.track.as_mut().into_iter().for_each(Track::show_turn);
-        let candidates = self.candidates_of(outline, seconds, tolerance, registration, Vec::new());
+        let (candidates, first) = self.candidates_of(outline, seconds, tolerance, registration, Vec::new());
         let fitting = candidates.iter().filter(|c| c.outcome.is_accepted());
         let Some(best) = fitting.min_by(|a, b| a.likelihood.squares.total_cmp(&b.likelihood.squares)) else {
             return candidates;
         };
         let pose = *best.track.body_pose();
         let Some(track) = self.track.as_mut().filter(|track| !track.turn_is_unseen()) else { return candidates };
-        let first = track.first_of_compared(outline, &pose, &mut self.frame);
+        let first = first.unwrap_or_else(|| track.first_of_compared(outline, &pose, &mut self.frame));
         if track.shows_turn_beside(&first, outline, &pose, &mut self.frame) {
             let symmetry = symmetry_order(track, &first, &pose, &mut self.frame);
             if symmetry == self.search_memory.symmetry {
@@ -207,11 +207,11 @@ impl MotionFilter {
             // What has been measured is so in the same way, unless others have vouched for it.
             let is_measured = candidates.iter().all(|candidate| candidate.verdict_of == VerdictOf::Itself);
             let measured = if is_measured { candidates } else { Vec::new() };
-            return self.candidates_of(outline, seconds, tolerance, registration, measured);
+            return self.candidates_of(outline, seconds, tolerance, registration, measured).0;
         }
         track.hide_turn();
         let Some(found) = self.registered(outline, Extent::Whole) else { return candidates };
-        self.candidates_of(outline, seconds, tolerance, &found, Vec::new())
+        self.candidates_of(outline, seconds, tolerance, &found, Vec::new()).0
     }
 
     /// The outline of the track brought onto that of the frame.
@@ -226,7 +226,7 @@ impl MotionFilter {
     }
 
     /// The poses of a registration with the frame, and those that the symmetry of the outline adds, measured, as far as they are not among
-    /// those measured before.
+    /// those measured before; of one alone, also what others may be compared with, as long as its frame is loaded.
     fn candidates_of(
         &mut self,
         outline: &Outline,
@@ -234,8 +234,8 @@ impl MotionFilter {
         tolerance: Tolerance,
         registration: &Registration,
         measured: Vec<Candidate>,
-    ) -> Vec<Candidate> {
-        let Some(track) = self.track.as_ref() else { return Vec::new() };
+    ) -> (Vec<Candidate>, Option<FirstPose>) {
+        let Some(track) = self.track.as_ref() else { return (Vec::new(), None) };
         self.frame.load(outline, track.reference());
         let poses = registration.poses(track, &self.frame.points, self.search_memory.symmetry);
         self.candidates_at(outline, seconds, tolerance, (&poses, measured))
@@ -248,15 +248,15 @@ impl MotionFilter {
         seconds: f64,
         tolerance: Tolerance,
         (poses, mut measured): (&[RegisteredPose], Vec<Candidate>),
-    ) -> Vec<Candidate> {
-        let Some(track) = self.track.as_ref() else { return Vec::new() };
+    ) -> (Vec<Candidate>, Option<FirstPose>) {
+        let Some(track) = self.track.as_ref() else { return (Vec::new(), None) };
         let is_same = |(found, candidate): (&RegisteredPose, &Candidate)| found.pose == candidate.found_in;
         if !poses.is_empty() && poses.len() == measured.len() && poses.iter().zip(&measured).all(is_same) {
             // Nothing has been added to what was measured and compared.
-            return measured;
+            return (measured, None);
         }
         self.frame.load(outline, track.reference());
-        let (mut candidates, Some(tried)) = (Vec::new(), self.tried()) else { return Vec::new() };
+        let (mut candidates, Some(tried)) = (Vec::new(), self.tried()) else { return (Vec::new(), None) };
         for found in poses {
             if let Some(at) = measured.iter().position(|candidate| candidate.found_in == found.pose) {
                 candidates.push(measured.swap_remove(at));
@@ -278,13 +278,18 @@ impl MotionFilter {
         }
         // Only those that are accepted are compared, with each other and the others.
         let is_any_accepted = candidates.iter().any(|candidate| candidate.outcome.is_accepted());
+        if let (Some(track), true, [alone]) = (&self.track, is_any_accepted, candidates.as_mut_slice()) {
+            let first = track.first_of_compared(outline, alone.track.body_pose(), &mut self.frame);
+            alone.likelihood = track.of_first(&first);
+            return (candidates, Some(first));
+        }
         if let Some(track) = self.track.as_ref().filter(|_| is_any_accepted) {
             let poses: Vec<_> = candidates.iter().map(|candidate| *candidate.track.body_pose()).collect();
             let likelihoods = track.compared(outline, &poses, &mut self.frame);
             candidates.iter_mut().zip(likelihoods).for_each(|(candidate, of_it)| candidate.likelihood = of_it);
         }
         self.accept_vouched_for(outline, tolerance, &mut candidates);
-        candidates
+        (candidates, None)
     }
 
     /// Accepts candidates too that scatter too much, or have too much beyond known ends, if one that is accepted explains it no better: the frame

@@ -29,6 +29,11 @@ impl Track {
         self.view().look_at_first(frame, pose)
     }
 
+    /// Negative log-likelihood of a pose that others may be compared with.
+    pub(crate) fn of_first(&self, first: &FirstPose) -> NegativeLogLikelihood {
+        self.view().negative_log_likelihood_of_first(first)
+    }
+
     /// Loads the points that poses are compared by.
     fn load_to_compare(&self, outline: &Outline, frame: &mut Frame) {
         frame.load(outline, self.reference);

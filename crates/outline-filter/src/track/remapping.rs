@@ -7,7 +7,7 @@ use super::Track;
 use crate::{
     belief::EarlierPoses,
     map::{CellPoint, Contour, has_common_places},
-    measurement::{Frame, NO_CELL, Pass},
+    measurement::{Frame, Pass},
     tuning::remapping as tuning,
 };
 
@@ -150,12 +150,12 @@ impl Track {
             buffers.load(outline, self.reference);
             let inverse = pose.try_inverse()?;
             buffers.clear_shifts(self.map.cells().len());
-            self.view().measure(buffers, pose, &[], Pass::First);
-            let Frame { measurements, points, places, .. } = &*buffers;
-            for ((m, p), place) in measurements.iter().zip(points).zip(places) {
+            self.view().measure_by_columns(buffers, pose, &[], Pass::First);
+            let (cells, Frame { columns, points, places, .. }) = (self.map.cells().len(), &*buffers);
+            for ((m, p), place) in columns.points().zip(points).zip(places) {
                 let at = map_point(&inverse, p);
                 let place = if m.weight > 0.0 { *place } else { at };
-                let cell = Some(m.cell).filter(|cell| *cell != NO_CELL);
+                let cell = Some(m.cell).filter(|cell| *cell < cells);
                 list.push(CellPoint { cell, place, at });
             }
         }
