@@ -7,11 +7,11 @@ use crate::label_evidence::LARGEST_NUMBER;
 /// The value of such borders, which is no number of an object where all others are small.
 const VOID: i64 = 255;
 
-/// A border has so many pixels at most for each side of a pixel on its edge, which are half of its width: those of PASCAL VOC are five pixels wide.
-const HALF_WIDTH: usize = 8;
+/// Farthest that the middle of a border is from what it lies between, in pixels: those of PASCAL VOC are five pixels wide, and somewhat more at corners.
+const HALF_WIDTH: usize = 5;
 
-/// Least share of its edge that is at objects: the border of an object that nothing touches has half.
-const AT_OBJECTS: f64 = 0.25;
+/// Most of the sides of pixels where an object lies at the ground, over those where it lies at a border: borders go all around objects.
+const AT_GROUND: f64 = 0.1;
 
 /// The labels of a mask with every void pixel given to what is nearest to it, objects or ground, so that an object reaches to the middle of its
 /// border; nothing where there is no such border.
@@ -20,25 +20,20 @@ pub(crate) fn without_void(labels: &[i64], width: usize, height: usize) -> Optio
     {
         return None;
     }
-    let (mut pixels, mut at_objects, mut at_ground) = (0, 0, 0);
-    for (place, _) in labels.iter().enumerate().filter(|(_, label)| **label == VOID) {
-        pixels += 1;
+    let (mut at_ground, mut at_void) = (0_u32, 0_u32);
+    for (place, _) in labels.iter().enumerate().filter(|(_, label)| **label > 0 && **label != VOID) {
         for beside in beside(place, width, height) {
-            match labels[beside] {
-                VOID => {}
-                1.. => at_objects += 1,
-                _ => at_ground += 1,
-            }
+            at_ground += u32::from(labels[beside] == 0);
+            at_void += u32::from(labels[beside] == VOID);
         }
     }
-    let edge = at_objects + at_ground;
-    let is_border = pixels < HALF_WIDTH * edge && f64::from(at_objects as u32) >= AT_OBJECTS * f64::from(edge as u32);
-    is_border.then(|| shared_out(labels, width, height))
+    let goes_around = f64::from(at_ground) <= AT_GROUND * f64::from(at_void);
+    (at_void > 0 && goes_around).then(|| shared_out(labels, width, height)).flatten()
 }
 
 /// Every void pixel has the label of the nearest that is not, by straight distance: each takes the source of one of its neighbours, the nearest
-/// sources first.
-fn shared_out(labels: &[i64], width: usize, height: usize) -> Vec<i64> {
+/// sources first. Nothing where one is farther from all others than the middle of a border: that is an object.
+fn shared_out(labels: &[i64], width: usize, height: usize) -> Option<Vec<i64>> {
     let mut source: Vec<Option<usize>> =
         labels.iter().enumerate().map(|(place, label)| (*label != VOID).then_some(place)).collect();
     let distance = |from: usize, to: usize| {
@@ -57,7 +52,11 @@ fn shared_out(labels: &[i64], width: usize, height: usize) -> Vec<i64> {
             }
         }
     }
-    source.iter().map(|source| source.map_or(0, |source| labels[source])).collect()
+    let is_near = |(place, source): (usize, &Option<usize>)| {
+        source.is_some_and(|source| distance(source, place) <= HALF_WIDTH * HALF_WIDTH)
+    };
+    let is_border = source.iter().enumerate().all(is_near);
+    is_border.then(|| source.iter().flatten().map(|source| labels[*source]).collect())
 }
 
 /// The pixels that share a side with one.
@@ -105,11 +104,28 @@ mod tests {
 
     #[test]
     fn an_object_of_that_number_and_grey_values_are_no_borders() {
-        // An object of its own, one of large numbers with a border, and one that lies half on another.
+        // An object of its own.
         let own = mask(|x, y| if disc(x, y) < 0.0 { VOID } else { i64::from(y < 9.0) });
         assert_eq!(without_void(&own, WIDTH, HEIGHT), None);
         let grey = mask(|x, y| if disc(x, y).abs() < 2.0 { VOID } else { 120 * i64::from(disc(x, y) < 0.0) });
         assert_eq!(without_void(&grey, WIDTH, HEIGHT), None);
+        // One that touches another, or lies half on it, however small it is.
+        for (x, half) in [(70.0, 6.0), (65.0, 6.0), (60.0, 3.0), (64.0, 2.0)] {
+            let is_other = move |px: f64, py: f64| (px - x).abs().max((py - 35.0).abs()) < half;
+            let touching = mask(|x, y| if is_other(x, y) { VOID } else { i64::from(disc(x, y) < 0.0) });
+            assert_eq!(without_void(&touching, WIDTH, HEIGHT), None, "{x} {half}");
+        }
+        // A broad frame of void around the object is no border.
+        let broad = mask(|x, y| {
+            if disc(x, y) < 0.0 {
+                1
+            } else if disc(x, y) < 12.0 {
+                VOID
+            } else {
+                0
+            }
+        });
+        assert_eq!(without_void(&broad, WIDTH, HEIGHT), None);
         assert_eq!(without_void(&[0; WIDTH * HEIGHT], WIDTH, HEIGHT), None);
     }
 }

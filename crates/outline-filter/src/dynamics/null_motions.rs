@@ -63,7 +63,9 @@ impl<const N: usize> Hypothesis<N> {
         k: usize,
     ) {
         let accelerations = self.course.acceleration_prior(pose_variance, k, seconds);
-        let of_acceleration = (0..k).map(|i| accelerations[i] * direction[i] * direction[i]).sum::<f64>();
+        // Of a multiple of the direction, along which it is that of a vector of this length.
+        let squared = direction.norm_squared();
+        let of_acceleration = (0..k).map(|i| accelerations[i] * (direction[i] / squared).powi(2)).sum::<f64>();
         for (block, variance) in [1.0, (seconds * seconds).recip(), of_acceleration].into_iter().enumerate() {
             for (i, j) in (0..k).flat_map(|i| (0..k).map(move |j| (i, j))) {
                 self.covariance[(block * k + i, block * k + j)] += variance * direction[i] * direction[j];

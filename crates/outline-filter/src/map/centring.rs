@@ -103,6 +103,11 @@ impl Centring {
         self.stretch.map_or(*generator, |stretch| stretch.unstretched(generator))
     }
 
+    /// From these coordinates to the body frame.
+    pub(super) fn to_body_from_stretched(self) -> Matrix3<f64> {
+        self.to_body() * self.stretch.map_or_else(Matrix3::identity, |stretch| stretch.inverse.to_homogeneous())
+    }
+
     /// From these coordinates, before the stretch, to the body frame.
     pub(super) fn to_body(self) -> Matrix3<f64> {
         let Self { centroid: c, spread, .. } = self;

@@ -3,7 +3,7 @@
 //! Errors of the normals make straight cells tell a little of where they lie along themselves. As long as no cell shows a direction it is projected out
 //! of all of them. Once new ones show it, nobody knows how far the old ones had gone along it when they were cut; what they tell of that is still the
 //! error of their normals, and would hold the object where it was never seen to be.
-use freeform_riccati::{MotionModel, ParameterVector};
+use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector};
 use nalgebra::Matrix3;
 
 use super::{NullDirection, NullDirections, OutlineMap};
@@ -28,7 +28,10 @@ impl OutlineMap {
         let mut shown = NullDirections::default();
         let Some(to_centred) = self.to_centred(model) else { return shown };
         let hidden = self.hidden_directions(&to_centred);
-        for null in directions.iter().filter(|null| hidden.beside(&to_centred.centred(&null.direction)).is_some()) {
+        let room = MAX_PARAMETERS.saturating_sub(self.null_space.of_first_cells.len());
+        for null in
+            directions.iter().filter(|null| hidden.beside(&to_centred.centred(&null.direction)).is_some()).take(room)
+        {
             let of_first = OfFirstCells { count, direction: null.direction, dual: null.dual };
             self.null_space.of_first_cells.push(of_first);
             self.levers.iter_mut().for_each(|levers| levers.leave_out(model, &of_first));

@@ -57,13 +57,21 @@ impl Levers {
         levers
     }
 
+    /// A direction of the body frame in the coordinates of the levers.
+    pub(super) fn stretched(&self, model: MotionModel, in_body: &NullDirection) -> Option<NullDirection> {
+        let to_body = self.centring.to_body_from_stretched();
+        Some(in_body.moved(model, (&to_body.try_inverse()?, &to_body)))
+    }
+
     /// Leaves out what the first cells do not show.
     pub(super) fn leave_out(&mut self, model: MotionModel, of_first: &OfFirstCells) {
-        let to_body = self.centring.to_body();
-        let Some(from_body) = to_body.try_inverse() else { return };
         let OfFirstCells { count, direction, dual } = *of_first;
-        let null = NullDirection { direction, dual }.moved(model, (&from_body, &to_body));
-        self.of_cells.iter_mut().take(count).for_each(|lever| null.project_out(&mut lever.across));
+        let Some(null) = self.stretched(model, &NullDirection { direction, dual }) else { return };
+        for lever in self.of_cells.iter_mut().take(count) {
+            null.project_out(&mut lever.across);
+            // What counts for nothing has no noise either.
+            null.project_out(&mut lever.along);
+        }
     }
 }
 

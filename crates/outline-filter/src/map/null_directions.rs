@@ -44,6 +44,15 @@ pub(crate) struct NullDirections {
 }
 
 impl NullDirections {
+    /// Those of the body frame in the image, for a pose; none for one that has no inverse.
+    pub(crate) fn moved(&self, model: MotionModel, pose: &Matrix3<f64>) -> Self {
+        let mut moved = Self::default();
+        if let Some(inverse) = pose.try_inverse() {
+            self.iter().for_each(|direction| moved.push(direction.moved(model, (pose, &inverse))));
+        }
+        moved
+    }
+
     /// Adds a direction. Of independent directions there are no more than there is room for: another is not taken.
     pub(super) fn push(&mut self, direction: NullDirection) {
         if let Some(entry) = self.entries.get_mut(self.count) {

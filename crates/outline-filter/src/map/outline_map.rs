@@ -212,6 +212,7 @@ impl OutlineMap {
             && self.most_seen <= tuning::MOST_SAVED
             && in_body.len() <= freeform_riccati::MAX_PARAMETERS
             && stretch.as_ref().is_none_or(Stretch::is_valid)
+            && of_first_cells.len() <= freeform_riccati::MAX_PARAMETERS
             && of_first_cells.iter().all(|of| of.count <= count && of.direction.iter().chain(&of.dual).all(within))
             && (0.0..=tuning::FARTHEST).contains(sigma)
             && !weakest_turn.is_nan()

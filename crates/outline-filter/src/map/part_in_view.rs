@@ -55,11 +55,16 @@ impl OutlineMap {
     pub(crate) fn are_shown_by_new(&self, model: MotionModel, first_new: usize, directions: &[NullDirection]) -> bool {
         let Some((levers, to_centred)) = self.levers.as_ref().zip(self.to_centred(model)) else { return false };
         let hidden = self.hidden_directions(&to_centred);
-        directions.iter().all(|NullDirection { direction, .. }| {
-            let Some(unit) = hidden.beside(&to_centred.centred(direction)) else { return true };
+        directions.iter().all(|null| {
+            let direction = &null.direction;
+            if hidden.beside(&to_centred.centred(direction)).is_none() {
+                return true;
+            }
+            let Some(NullDirection { direction, .. }) = levers.stretched(model, null) else { return false };
+            let length = direction.iter().map(|entry| entry * entry).sum::<f64>();
             let of_new = levers.of_cells[first_new..].iter().map(|lever| {
-                let along = lever.across.iter().zip(&unit).map(|(a, b)| a * b).sum::<f64>();
-                lever.length * along * along
+                let along = lever.across.iter().zip(&direction).map(|(a, b)| a * b).sum::<f64>();
+                lever.length * along * along / length
             });
             of_new.sum::<f64>() >= tuning::FEWEST_TO_SHOW
         })
@@ -219,13 +224,13 @@ mod tests {
             frame.measurements.iter().filter(|m| m.weight > 0.0).partition(|m| m.cell < count);
         assert!(of_first.len() > 300 && of_first.iter().all(|m| along(&m.jacobian) < 1e-12));
         assert!(of_new.iter().filter(|m| along(&m.jacobian) > 0.3).count() > 15);
-        // Nobody knows how far the sides had gone before: a radius or so.
+        // Nobody knows how far the sides had gone before: a radius.
         let covariance = track.summary().expect("finite").covariance;
         let dual = slide.dual.iter().enumerate();
         let variance: f64 = dual
             .flat_map(|(i, a)| slide.dual.iter().enumerate().map(move |(j, b)| (i, j, a * b)))
             .map(|(i, j, product)| product * covariance[(i, j)])
             .sum();
-        assert!(variance > 0.5, "{variance}");
+        assert!((variance - 1.0).abs() < 0.1, "{variance}");
     }
 }

@@ -19,7 +19,7 @@ use crate::{
 pub(super) struct Grown {
     /// Number of the first of them.
     first_new: usize,
-    /// The null directions of the outline as it was, in the image.
+    /// What the outline did not show before them and shows now, in the image.
     forgotten: NullDirections,
 }
 
@@ -55,7 +55,7 @@ impl Track {
     /// Adds cells for the parts of contours in the body frame that the map does not have yet, and measures them by the loaded points, which
     /// the contours are of.
     ///
-    /// Returns the null directions of the outline as it was, in the image: all that was known along them is forgotten.
+    /// Returns what the outline did not show before and shows now, in the image: all that was known along it is forgotten.
     pub(super) fn grow_along(&mut self, contours: Vec<Contour>, frame: &mut Frame) -> NullDirections {
         let Some(Grown { first_new, forgotten }) = self.add_cells(contours, frame) else {
             return NullDirections::default();
@@ -75,28 +75,34 @@ impl Track {
         // Of the body frame. New cells come from points of this frame alone, and the others do not.
         let sigma = self.noise.sigma / self.belief.scale();
         let of_frame = sigma * frame.deviations.typical();
-        let first_new = map.grow(contours, of_frame, &self.belief.offsets)?;
-        map.find_null_directions(model, sigma);
-        if let Some(before) = before.filter(|_| !map.are_shown_by_new(model, first_new, &null_in_body)) {
-            self.map = before;
+        let grown = map.grow(contours, of_frame, &self.belief.offsets).filter(|first_new| {
+            map.find_null_directions(model, sigma);
+            map.are_shown_by_new(model, *first_new, &null_in_body)
+        });
+        let Some(first_new) = grown else {
+            before.into_iter().for_each(|before| self.map = before);
             return None;
-        }
+        };
         let cells = map.cells().len();
         self.belief.information.cells.resize(cells);
         self.belief.offsets.resize(cells, 0.0);
         self.noise.resize(cells);
         self.shape.resize(cells);
         self.early_shape.reserve(cells);
+        let mut forgotten = NullDirections::default();
         if !null.is_empty() {
             let shown = map.keep_unshown_by_first(model, first_new, &null_in_body);
             self.body_frame.forget(&shown);
+            forgotten = shown.moved(model, &self.belief.pose);
+            self.belief.hold(&forgotten);
+            // Those that stay are forgotten too: they have another centre, about which something may be known.
             let variance = self.noise.effective_variance();
             self.belief.forget(&null, variance);
             self.belief.forget(&map.null_directions(model, &self.belief.pose), variance);
             let is_shown = turn_was_unseen && !map.turn_is_unseen(model);
             map.record_turn(if is_shown { TurnEvent::ShownByGrowth } else { TurnEvent::NotShownByGrowth });
         }
-        Some(Grown { first_new, forgotten: null })
+        Some(Grown { first_new, forgotten })
     }
 
     /// Takes the loaded points on cells from `first_new` on, which have just been added, as their first measurement.

@@ -45,7 +45,7 @@ pub(crate) struct Outcome {
     pub(crate) rounding: CentredDeviations,
     /// Displacement of the whole outline by the frame, in the body frame.
     pub(crate) shift: SVector<f64, MAX_PARAMETERS>,
-    /// What the outline did not show before the frame, in the image, where it has grown by that: nothing is known along it.
+    /// What the outline did not show before the frame and shows now that it has grown, in the image: nothing is known along it.
     pub(crate) forgotten: NullDirections,
     /// Why the object may lie elsewhere although the frame was taken.
     pub(crate) doubt: Option<Doubt>,

@@ -52,6 +52,15 @@ pub(super) mod beside {
 
 /// What turns in its place.
 pub(super) mod turning {
+    /// Directions in which an outline is looked at from its middle: a pixel at the edge of a body of eighty pixels.
+    pub(in crate::choice) const DIRECTIONS: usize = 256;
+
+    /// Parts of the angle between two of them by which a turn is told: a quarter of a pixel there.
+    pub(in crate::choice) const PARTS: i32 = 4;
+
+    /// One of so many directions at least has a point: between others the outline is taken to be straight.
+    pub(in crate::choice) const ONE_IN_SEEN: usize = 4;
+
     /// An outline has turned where it is off by less than this share of what it is off without the turn, root mean square: points are off by some
     /// tenths of a pixel, teeth that have gone on by some pixels, and what goes over the edge of something at rest leaves all else where it is.
     pub(in crate::choice) const TURNED: f64 = 0.5;

@@ -4,14 +4,8 @@ use std::f64::consts::TAU;
 use nalgebra::Vector2;
 
 use super::sight::Sight;
-use super::tuning::turning as tuning;
+use super::tuning::turning::{self as tuning, DIRECTIONS, PARTS};
 use crate::edges::median;
-
-/// Directions in which an outline is looked at from its middle.
-const DIRECTIONS: usize = 256;
-
-/// Parts of the angle between two of them by which a turn is told.
-const PARTS: i32 = 4;
 
 /// How far an outline reaches from its middle in every direction.
 pub(super) struct Reach([f64; DIRECTIONS]);
@@ -26,7 +20,7 @@ impl Reach {
             *reach = reach.max(from_middle.norm());
         }
         let seen: Vec<usize> = (0..DIRECTIONS).filter(|k| farthest[*k] > 0.0).collect();
-        if 4 * seen.len() < DIRECTIONS {
+        if tuning::ONE_IN_SEEN * seen.len() < DIRECTIONS {
             return None;
         }
         // Directions between those of points.
