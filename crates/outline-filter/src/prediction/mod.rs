@@ -7,6 +7,5 @@ mod step;
 pub(crate) use pose_change::{
     ByKind, PoseMatrix, TimeOfChange, adjoint_matrix, centred_change, kind_index, moved_covariance,
 };
-pub(crate) use process_noise::holding;
 pub(crate) use shape_noise::ShapeNoise;
 pub(crate) use step::ErrorTransition;

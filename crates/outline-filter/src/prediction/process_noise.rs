@@ -8,19 +8,6 @@ use crate::{
     tuning::null_space::HOLDING,
 };
 
-/// Information by which null directions of k parameters are held where they are, and their motion over so many seconds at none.
-pub(crate) fn holding(null: &[NullDirection], k: usize, span: f64) -> StateMatrix {
-    let mut held = StateMatrix::zeros();
-    for NullDirection { dual, .. } in null {
-        for (block, information) in [(0, HOLDING), (k, HOLDING * span * span)] {
-            for i in 0..k {
-                (0..k).for_each(|j| held[(block + i, block + j)] += information * dual[i] * dual[j]);
-            }
-        }
-    }
-    held
-}
-
 impl Belief {
     /// Lets the motion have changed at random over `seconds`. Lengths of the noise are divided by `radius`, covariances by `variance`.
     pub(crate) fn add_process_noise(&mut self, noise: &ProcessNoise, seconds: f64, radius: f64, variance: f64) {
@@ -88,13 +75,14 @@ impl Belief {
         self.earlier_poses = EarlierPoses::Forgotten;
     }
 
-    /// Takes null directions to be none, and known, before they are forgotten: in every solution they were [held](holding) so, and what was never known
-    /// along them would have no bound.
-    pub(crate) fn hold(&mut self, null: &[NullDirection]) {
+    /// Takes the pose to be known along null directions, as in every solution, before these are forgotten: what was never known along them would have no
+    /// bound.
+    pub(crate) fn hold_pose(&mut self, null: &[NullDirection]) {
         let k = self.information.k;
-        let held = holding(null, k, self.memory.span.max(self.memory.step));
-        for (i, j) in (0..2 * k).flat_map(|i| (0..2 * k).map(move |j| (i, j))) {
-            self.information.dense[i][j] += held[(i, j)];
+        for NullDirection { dual, .. } in null {
+            for (i, j) in (0..k).flat_map(|i| (0..k).map(move |j| (i, j))) {
+                self.information.dense[i][j] += HOLDING * dual[i] * dual[j];
+            }
         }
         self.marginal = self.information.marginal();
     }

@@ -94,7 +94,7 @@ impl Track {
             let shown = map.keep_unshown_by_first(model, first_new, &null_in_body);
             self.body_frame.forget(&shown);
             forgotten = shown.moved(model, &self.belief.pose);
-            self.belief.hold(&forgotten);
+            self.belief.hold_pose(&forgotten);
             // Those that stay are forgotten too: they have another centre, about which something may be known.
             let variance = self.noise.effective_variance();
             self.belief.forget(&null, variance);

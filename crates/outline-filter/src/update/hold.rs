@@ -10,7 +10,7 @@ use freeform_riccati::MotionModel;
 use crate::{
     belief::{Belief, StateMatrix},
     map::{NullDirection, OutlineMap},
-    prediction::holding,
+    tuning::null_space::HOLDING,
 };
 
 /// Information by which null directions are held where they are predicted; `None` where there are none.
@@ -22,7 +22,15 @@ pub(crate) fn hold(belief: &Belief, map: &OutlineMap, null: &[NullDirection]) ->
     let k = belief.parameter_count();
     let memory = &belief.memory;
     let span = memory.effective[..k].iter().copied().fold(memory.span, f64::min).max(memory.step);
-    Some(holding(null, k, span))
+    let mut hold = StateMatrix::zeros();
+    for NullDirection { dual, .. } in null {
+        for (block, information) in [(0, HOLDING), (k, HOLDING * span * span)] {
+            for i in 0..k {
+                (0..k).for_each(|j| hold[(block + i, block + j)] += information * dual[i] * dual[j]);
+            }
+        }
+    }
+    Some(hold)
 }
 
 /// Information with that of a hold, where there is one.
