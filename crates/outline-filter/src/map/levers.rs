@@ -8,7 +8,6 @@ use super::{
     NullDirection,
     centring::{Centring, NormalByNeighbours},
     first_cells::OfFirstCells,
-    rest::add_square,
 };
 
 /// The lever arm of a cell: the normal velocities that a unit of every parameter gives its middle, in centred coordinates.
@@ -78,13 +77,29 @@ impl Levers {
 impl SumOfSquares {
     /// Over levers of k parameters.
     pub(super) fn of<'a>(levers: impl Iterator<Item = (&'a Lever, f64)>, k: usize) -> Self {
-        let zeros = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::zeros();
-        let mut sum = Self { levers: zeros, of_noise: zeros };
-        for (lever, times) in levers {
-            add_square(&mut sum.levers, &lever.across.into(), times, k);
-            add_square(&mut sum.of_noise, &lever.along.into(), lever.variance * times, k);
+        match k {
+            3 => Self::sized::<3>(levers),
+            4 => Self::sized::<4>(levers),
+            6 => Self::sized::<6>(levers),
+            _ => Self::sized::<MAX_PARAMETERS>(levers),
         }
-        sum
+    }
+
+    /// Frames of which a part is hidden ask for it in every linearisation.
+    fn sized<'a, const K: usize>(levers: impl Iterator<Item = (&'a Lever, f64)>) -> Self {
+        let (mut of_levers, mut of_noise) = ([[0.0; K]; K], [[0.0; K]; K]);
+        for (lever, times) in levers {
+            let of_noise_here = times * lever.variance;
+            for i in 0..K {
+                let (across, along) = (times * lever.across[i], of_noise_here * lever.along[i]);
+                for j in 0..K {
+                    of_levers[i][j] += across * lever.across[j];
+                    of_noise[i][j] += along * lever.along[j];
+                }
+            }
+        }
+        let whole = |sum: [[f64; K]; K]| SMatrix::from_fn(|i, j| if i < K && j < K { sum[i][j] } else { 0.0 });
+        Self { levers: whole(of_levers), of_noise: whole(of_noise) }
     }
 }
 

@@ -49,8 +49,8 @@ impl ToImage {
         for i in 0..k {
             null.direction[i] = (0..k).map(|j| self.adjoint[i][j] * in_body[j]).sum();
         }
-        for j in 0..k {
-            dual_in_body[j] = (0..k).map(|i| dual_of_centred[i] * self.of_centring[i][j]).sum();
+        for (j, entry) in dual_in_body.iter_mut().enumerate().take(k) {
+            *entry = (0..k).map(|i| dual_of_centred[i] * self.of_centring[i][j]).sum();
         }
         for j in 0..k {
             null.dual[j] = (0..k).map(|i| dual_in_body[i] * self.of_inverse[i][j]).sum();

@@ -1,5 +1,6 @@
 //! Bodies whose ends come out from behind the edges of a window while their long sides are followed.
 use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
+use freeform_estimate::MotionEstimate;
 use freeform_riccati::MotionModel;
 use nalgebra::{Point2, Rotation2, Vector2};
 use rand::{RngExt as _, SeedableRng as _};
@@ -99,7 +100,7 @@ fn bodies_whose_ends_come_into_view_are_where_and_as_fast_as_is_stated_or_that_i
             let step = run.step(time, &outline).expect("increasing times");
             let truth = [slide.omega, slide.b().x, slide.b().y];
             let parameters = run.estimate();
-            for (parameter, truth) in parameters.iter().flat_map(|estimate| estimate.parameters()).zip(truth) {
+            for (parameter, truth) in parameters.iter().flat_map(MotionEstimate::parameters).zip(truth) {
                 if let Some((value, deviation)) = parameter.value.zip(parameter.standard_deviation) {
                     stated[0] += 1;
                     off[0] += u32::from((value - truth).abs() > 4.0 * deviation);
