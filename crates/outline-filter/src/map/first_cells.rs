@@ -3,7 +3,7 @@
 //! Errors of the normals make straight cells tell a little of where they lie along themselves. As long as no cell shows a direction it is projected out
 //! of all of them. Once new ones show it, nobody knows how far the old ones had gone along it when they were cut; what they tell of that is still the
 //! error of their normals, and would hold the object where it was never seen to be.
-use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector};
+use freeform_riccati::{MAX_PARAMETERS, MotionModel};
 use nalgebra::Matrix3;
 
 use super::{NullDirection, NullDirections, OutlineMap};
@@ -13,8 +13,7 @@ use super::{NullDirection, NullDirections, OutlineMap};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct OfFirstCells {
     pub(super) count: usize,
-    pub(super) direction: ParameterVector,
-    pub(super) dual: ParameterVector,
+    pub(super) null: NullDirection,
 }
 
 impl OutlineMap {
@@ -32,7 +31,7 @@ impl OutlineMap {
         for null in
             directions.iter().filter(|null| hidden.beside(&to_centred.centred(&null.direction)).is_some()).take(room)
         {
-            let of_first = OfFirstCells { count, direction: null.direction, dual: null.dual };
+            let of_first = OfFirstCells { count, null: *null };
             self.null_space.of_first_cells.push(of_first);
             self.levers.iter_mut().for_each(|levers| levers.leave_out(model, &of_first));
             shown.push(*null);
@@ -49,10 +48,7 @@ impl OutlineMap {
         let of_first = &self.null_space.of_first_cells;
         let inverse = if of_first.is_empty() { None } else { pose.try_inverse() };
         inverse.into_iter().flat_map(move |inverse| {
-            of_first.iter().map(move |OfFirstCells { count, direction, dual }| {
-                let in_body = NullDirection { direction: *direction, dual: *dual };
-                (*count, in_body.moved(model, (pose, &inverse)))
-            })
+            of_first.iter().map(move |OfFirstCells { count, null }| (*count, null.moved(model, (pose, &inverse))))
         })
     }
 }

@@ -64,9 +64,8 @@ impl Levers {
 
     /// Leaves out what the first cells do not show.
     pub(super) fn leave_out(&mut self, model: MotionModel, of_first: &OfFirstCells) {
-        let OfFirstCells { count, direction, dual } = *of_first;
-        let Some(null) = self.stretched(model, &NullDirection { direction, dual }) else { return };
-        for lever in self.of_cells.iter_mut().take(count) {
+        let Some(null) = self.stretched(model, &of_first.null) else { return };
+        for lever in self.of_cells.iter_mut().take(of_first.count) {
             null.project_out(&mut lever.across);
             // What counts for nothing has no noise either.
             null.project_out(&mut lever.along);

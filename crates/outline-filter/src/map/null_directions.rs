@@ -6,6 +6,7 @@ use nalgebra::Matrix3;
 
 /// A null direction in the image: Jacobians of measurements lose `(h . direction) dual`.
 #[derive(Debug, Clone, Copy, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct NullDirection {
     pub(crate) direction: ParameterVector,
     pub(crate) dual: ParameterVector,

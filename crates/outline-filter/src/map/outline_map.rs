@@ -213,7 +213,9 @@ impl OutlineMap {
             && in_body.len() <= freeform_riccati::MAX_PARAMETERS
             && stretch.as_ref().is_none_or(Stretch::is_valid)
             && of_first_cells.len() <= freeform_riccati::MAX_PARAMETERS
-            && of_first_cells.iter().all(|of| of.count <= count && of.direction.iter().chain(&of.dual).all(within))
+            && of_first_cells
+                .iter()
+                .all(|of| of.count <= count && of.null.direction.iter().chain(&of.null.dual).all(within))
             && (0.0..=tuning::FARTHEST).contains(sigma)
             && !weakest_turn.is_nan()
             && !turn_without_most.is_nan()

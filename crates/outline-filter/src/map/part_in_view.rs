@@ -1,6 +1,6 @@
 //! What a part of an outline shows of its pose: the whole of a bar shows how far it has gone along itself, its sides alone do not.
 use freeform_riccati::{MAX_PARAMETERS, MotionModel};
-use nalgebra::{Matrix3, SMatrix};
+use nalgebra::{Matrix3, SMatrix, SVector};
 
 use super::{
     NullDirection, NullDirections, OutlineMap, levers::SumOfSquares, orthonormal::Orthonormal, rest::eigen_of_block,
@@ -14,18 +14,22 @@ impl OutlineMap {
     pub(crate) fn untold_directions(&self, model: MotionModel, pose: &Matrix3<f64>, weights: &[f64]) -> NullDirections {
         let (mut untold, k) = (NullDirections::default(), model.parameter_count());
         let Some(levers) = &self.levers else { return untold };
+        let in_view = levers.of_cells.iter().zip(weights).filter(|(_, weight)| **weight > 0.0);
+        let sum = SumOfSquares::of(in_view.map(|(lever, weight)| (lever, weight * lever.length)), k);
+        let is_untold = |(value, vector): &(f64, SVector<f64, MAX_PARAMETERS>)| {
+            *value < tuning::EXPLAINED * (vector.transpose() * sum.of_noise * vector)[(0, 0)]
+        };
+        let mut of_noise_alone = eigen_of_block(&sum.levers, k).filter(is_untold).peekable();
+        // Most frames show all.
+        if of_noise_alone.peek().is_none() {
+            return untold;
+        }
         let to_body = levers.centring.to_body();
         let (Some(to_image), Some(from_body)) = (ToImage::of(model, pose, &to_body), to_body.try_inverse()) else {
             return untold;
         };
-        let in_view = levers.of_cells.iter().zip(weights).filter(|(_, weight)| **weight > 0.0);
-        let sum = SumOfSquares::of(in_view.map(|(lever, weight)| (lever, weight * lever.length)), k);
         let mut left_out = self.hidden_directions(&to_image);
-        for (value, vector) in eigen_of_block(&sum.levers, k) {
-            let of_noise = (vector.transpose() * sum.of_noise * vector)[(0, 0)];
-            if value >= tuning::EXPLAINED * of_noise {
-                continue;
-            }
+        for (_, vector) in of_noise_alone {
             let generator = levers.centring.unstretched(&model.generator(&vector.as_slice()[..k]));
             if let Some(unit) = left_out.add(&model.parameters_of(&generator)) {
                 let in_body = to_body * model.generator(&unit[..k]) * from_body;
@@ -167,7 +171,7 @@ mod tests {
         let displacement = |track: &Track, counts: fn(Vector2<f64>) -> bool| {
             let mut information = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::identity() * 1e-3;
             for (cell, weight) in track.map().cells().iter().zip(weights(track, counts)) {
-                let h = nalgebra::SVector::from(MotionModel::Rigid.normal_velocities(&cell.centre, &cell.normal));
+                let h = SVector::from(MotionModel::Rigid.normal_velocities(&cell.centre, &cell.normal));
                 information += 1e6 * weight * h * h.transpose();
             }
             let covariance = information.try_inverse().expect("regular");

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Point2, SMatrix, SVector};
 use crate::tuning::null_space as tuning;
 
 /// Adds `times v v'` to a sum; only the first `entries` of v are not zero.
-pub(super) fn add_square(
+fn add_square(
     sum: &mut SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>,
     vector: &SVector<f64, MAX_PARAMETERS>,
     times: f64,

@@ -51,9 +51,8 @@ impl Slide {
 
     /// Where a point at the first frame is at a time.
     fn moved(&self, point: &Vector2<f64>, time: f64) -> Vector2<f64> {
-        let mut motion = [0.0; freeform_riccati::MAX_PARAMETERS];
-        (motion[0], motion[1], motion[2]) = (self.omega, self.b().x, self.b().y);
-        (MotionModel::Rigid.flow(&motion[..3], time) * Point2::from(*point)).coords
+        let b = self.b();
+        (MotionModel::Rigid.flow(&[self.omega, b.x, b.y], time) * Point2::from(*point)).coords
     }
 
     /// The arcs in the window at a time.
