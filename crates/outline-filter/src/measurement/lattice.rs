@@ -116,12 +116,16 @@ fn origin(values: &[f64], pitch: f64) -> Option<f64> {
     Some(largest[largest.len() / 2])
 }
 
-/// Whether points at nodes follow each other along rows, columns, and diagonals, none of them twice.
+/// Whether points at nodes follow each other along rows, columns, and diagonals, one that repeats the point before left out.
 fn is_chain(outline: &Outline, pitch: f64) -> bool {
     let (mut steps, mut straight) = (0_usize, 0_usize);
     for piece in outline.pieces() {
         for pair in piece.points.windows(2) {
             let step = (pair[1] - pair[0]).abs();
+            // Coordinates that are rounded may repeat.
+            if step.max() == 0.0 {
+                continue;
+            }
             let near = tuning::ON_LINE * pitch;
             let along = step.min() < near || (step.x - step.y).abs() < near;
             straight += usize::from(along && step.max() > near);

@@ -223,13 +223,16 @@ impl MotionFilter {
     pub(super) fn process(&mut self, time: f64, outline: &Outline) -> (Option<FrameMeasurement>, Option<Rejection>) {
         self.measure_before_next();
         self.clock.last_frame = time;
-        let was_changing = self.history.is_changing();
+        let (was_changing, was_lost) = (self.history.is_changing(), self.phase == Phase::Lost);
         let outcome = match self.phase {
             Phase::Tracking => self.follow(time, outline).map(|outcome| self.look_elsewhere(outcome, time, outline)),
             _ => self.acquire(time, outline),
         };
         self.search_memory.budget.add_frame(self.phase == Phase::Tracking);
         let rejection = outcome.map_or(Some(Rejection::NotFound), |outcome| outcome.verdict.err());
+        if rejection.is_none() && was_lost && self.phase == Phase::Acquiring && self.begin_unrelated(time, outline) {
+            return (outcome.map(|outcome| outcome.measurement), Some(Rejection::NotFound));
+        }
         if rejection.is_none() {
             self.counts.add_accepted();
             self.search_memory.unfound.clear();

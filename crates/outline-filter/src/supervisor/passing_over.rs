@@ -7,9 +7,9 @@ use super::{
 use crate::track::Track;
 
 impl MotionFilter {
-    /// Whether a frame that repeats the one before it cannot show the object: as far as is known it is not at rest.
+    /// Whether a frame that repeats the one before it need not show where the object is now: nothing says that it is at rest.
     pub(super) fn may_have_moved(&self) -> bool {
-        self.phase != Phase::Tracking || self.track.as_ref().is_some_and(Track::moves)
+        self.phase != Phase::Tracking || !self.track.as_ref().is_some_and(Track::is_known_to_rest)
     }
 
     /// Moves on to the time of a frame that repeats the one before it.

@@ -40,6 +40,24 @@ impl MotionFilter {
         self.counts.begin_track();
     }
 
+    /// Whether all that is known rests on one step between two frames that show parts of the outline: such parts may fit in a wrong pose, and no third
+    /// frame has confirmed it.
+    pub(super) fn rests_on_two_parts(&self) -> bool {
+        let shows_part = self.window.first().is_some_and(|first| matches!(first, Outline::Open(_)));
+        shows_part && self.counts.accepted_by_track <= tuning::UNCONFIRMED
+    }
+
+    /// Begins again with a frame in which a lost object was found elsewhere than expected, where nothing has [confirmed](Self::rests_on_two_parts) the
+    /// step before. Whether it has.
+    pub(super) fn begin_unrelated(&mut self, time: f64, outline: &Outline) -> bool {
+        if !self.rests_on_two_parts() || self.start(time, outline).is_err() {
+            return false;
+        }
+        self.counts.rejected_in_recording += 1;
+        self.counts.restarts += 1;
+        true
+    }
+
     /// After a rejected frame: look elsewhere, or begin again.
     pub(super) fn fall_back(&mut self, time: f64, outline: &Outline) {
         let Counts { rejected_in_a_row, accepted_by_track, rejected_by_track, .. } = self.counts;

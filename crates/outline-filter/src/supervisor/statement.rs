@@ -101,10 +101,10 @@ impl MotionFilter {
     }
 
     /// The estimated motion, at the time of [`state`](Self::state). `None` before the second accepted frame, also after a restart of the
-    /// map by a frame that shows the turn of the object for the first time.
+    /// map by a frame that shows the turn of the object for the first time; before the third where the first shows a part of the outline.
     #[must_use]
     pub fn estimate(&self) -> Option<MotionEstimate> {
-        if matches!(self.phase, Phase::Waiting | Phase::Acquiring) {
+        if matches!(self.phase, Phase::Waiting | Phase::Acquiring) || self.rests_on_two_parts() {
             return None;
         }
         let track = self.track.as_ref()?;

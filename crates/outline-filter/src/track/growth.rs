@@ -36,8 +36,7 @@ impl Track {
         }
         track.noise.adopt_level_of(&self.noise);
         track.record_turn(TurnEvent::Begun);
-        track.begin_here_with_any_turn();
-        track.keep_body_frame_of(self);
+        track.begin_with_any_turn_of(self);
         Some(track)
     }
 

@@ -34,6 +34,8 @@ pub(crate) mod supervisor {
     pub(crate) const FOLLOWED_FRAME: usize = 4;
     /// A map that has taken no more frames than this may have been begun from what is not the object.
     pub(crate) const FEW_FRAMES: usize = 5;
+    /// Frames of a map that a third has not confirmed.
+    pub(crate) const UNCONFIRMED: usize = 2;
     /// Frames rejected in a row after which the object is given up and a new one taken: a second of video.
     pub(crate) const GIVEN_UP: usize = 30;
     /// Squared innovation of one frame beyond which a lost object has not gone on as it was.

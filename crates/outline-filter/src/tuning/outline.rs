@@ -110,6 +110,8 @@ pub(crate) mod contour {
 
 /// Directions of the pose that an outline does not show.
 pub(crate) mod null_space {
+    /// Standard deviation of a turn that may be any, rad: pi / sqrt(3).
+    pub(crate) const ANY_TURN: f64 = 1.813_799_364_234_217_8;
     /// Eigenvalue of the lever arms, in squares of the RMS radius, below which a direction of the pose cannot be seen.
     pub(crate) const DEGENERATE: f64 = 0.003;
     /// Times what the errors of the normals would make of the levers in a direction that is not seen: that, and some more.

@@ -1,8 +1,12 @@
 //! Poses of objects whose motion is no constant generator, and of those that show their turn in one place only.
 use crate::filter_support::{filter, frames_of, settings};
+use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
 use freeform_riccati::{MotionModel, RigidMotion};
 use freeform_sim_camera::{BuiltInShape, Dynamics, Motion, Settings, Shape, Trajectory};
 use nalgebra::{Affine2, Point2, Vector2};
+use rand::{RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
 
 /// Share of the 95 % intervals of angle and position that hold the truth, after a second and after two.
 fn held(dynamics: Dynamics, velocity: Vector2<f64>, omega: f64) -> f64 {
@@ -125,4 +129,46 @@ fn a_disc_with_a_notch_that_swings_is_not_followed_past_its_notch() {
         }
     }
     assert!(wrong.is_empty(), "{wrong:?}");
+}
+
+/// The first frames show the round side of a drop alone, so that nothing says how far it turns meanwhile.
+#[test]
+fn a_turn_that_the_first_frames_did_not_show_stays_unknown_when_the_map_is_cut_anew() {
+    let motion = RigidMotion { omega: 0.8, b1: 0.1, b2: -0.05 };
+    let drop = |angle: f64| {
+        let radius = if angle.cos() > 0.5 { 0.5 / (std::f64::consts::FRAC_PI_3 - angle.abs()).cos() } else { 0.5 };
+        Point2::from(radius * Vector2::new(angle.cos(), angle.sin()))
+    };
+    let mut random = ChaCha8Rng::seed_from_u64(3);
+    let mut run = filter(MotionModel::Rigid);
+    let mut stated = 0;
+    for frame in 0..60_u32 {
+        let time = f64::from(frame) / 30.0;
+        let moved = MotionModel::Rigid.flow(&[motion.omega, motion.b1, motion.b2], time);
+        let (from, count) = if frame < 8 { (1.3, 70_u32) } else { (-3.1, 100) };
+        let spacing = if frame < 8 { (std::f64::consts::TAU - 2.6) / 70.0 } else { std::f64::consts::TAU / 100.0 };
+        let mut point = |i: u32| {
+            let angle = from + spacing * (f64::from(i) + random.random_range(0.0..1.0));
+            let wrapped = (angle + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
+            let mut error = || 0.003 * random.sample::<f64, _>(StandardNormal);
+            moved * drop(wrapped) + Vector2::new(error(), error())
+        };
+        let points: Vec<_> = (0..count).map(&mut point).collect();
+        let outline = if frame < 8 {
+            Outline::Open(OpenOutline::new(vec![OpenArc::new(points).expect("an arc")]).expect("an outline"))
+        } else {
+            Outline::closed(points).expect("an outline")
+        };
+        run.step(time, &outline).expect("increasing times");
+        let angle = run.state().map(|state| state.pose_parameters()[0].standard_deviation);
+        if let Some(deviation) = angle.filter(|deviation| deviation.is_finite()) {
+            assert!(frame < 8 || deviation > 1.5, "frame {frame}: {deviation} rad");
+            stated += 1;
+        }
+    }
+    let omega = run.estimate().expect("an estimate").parameters().next().expect("omega comes first");
+    let (value, deviation) = (omega.value.expect("a drop"), omega.standard_deviation.expect("a drop"));
+    assert!((value - motion.omega).abs() < 4.0 * deviation && deviation < 0.02, "{value} +- {deviation}");
+    // Cut anew from 16 frames, and followed on.
+    assert!(stated > 20, "{stated}");
 }
