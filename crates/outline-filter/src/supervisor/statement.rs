@@ -38,7 +38,7 @@ impl MotionFilter {
     /// (random); then what the motion model leaves out, edges and rounding (systematic).
     fn stated_now(&self) -> Option<Statement> {
         let track = self.track.as_ref().filter(|track| track.is_shown())?;
-        let own = track.summary()?;
+        let own = track.summary_in_body_frame()?;
         let (model, centroid) = (self.settings.model, track.centred_pose().centroid);
         let none = CentredDeviations::zeros();
         let mut random = own;
@@ -207,12 +207,19 @@ impl MotionFilter {
     /// if [`estimate`](Self::estimate) is.
     #[must_use]
     pub fn state(&self) -> Option<MotionState> {
+        let mut stated = self.statement()?.all;
+        self.track.as_ref()?.add_kept_error(&mut stated);
+        self.state_with(&stated)
+    }
+
+    /// The state with these deviations.
+    fn state_with(&self, stated: &Summary) -> Option<MotionState> {
         let estimate = self.estimate()?;
         let mut observable = [false; MAX_PARAMETERS];
         observable.iter_mut().zip(estimate.parameters()).for_each(|(seen, p)| *seen = p.value.is_some());
         let is_ambiguous = self.turn_hypotheses.make_pose_doubtful() && self.ambiguity().is_some();
         let turn = if is_ambiguous { TurnOfPose::Ambiguous } else { TurnOfPose::AsTheOutlineShows };
-        self.track.as_ref()?.state_of(&self.statement()?.all, self.clock.of_track, observable, turn)
+        self.track.as_ref()?.state_of(stated, self.clock.of_track, observable, turn)
     }
 
     /// Velocity of the object's centroid, that of the area within its known outline (the centre of its cells where that is not one closed
@@ -225,7 +232,8 @@ impl MotionFilter {
         if self.turn_hypotheses.are_doubtful() || !self.is_stated() || self.hides_velocity() {
             return None;
         }
-        self.track.as_ref()?.velocity_of_centroid(&self.state()?)
+        // It is where the outline is, wherever the body frame lies.
+        self.track.as_ref()?.velocity_of_centroid(&self.state_with(&self.statement()?.all)?)
     }
 
     /// Covariance of the motion parameters in the order of the model, image units; `None` before the first frame, or if it is not

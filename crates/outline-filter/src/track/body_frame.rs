@@ -2,14 +2,13 @@
 #[cfg(feature = "serde")]
 use freeform_estimate::StateFormat;
 use freeform_riccati::MAX_PARAMETERS;
-use nalgebra::Matrix3;
 
 use super::Track;
 #[cfg(feature = "serde")]
 use crate::tuning::statement::ROUNDING_OF_CORRELATION;
 use crate::{
     belief::StateMatrix,
-    dynamics::DynamicsFilter,
+    dynamics::{DynamicsFilter, Summary},
     map::NullDirection,
     prediction::{PoseMatrix, moved_covariance},
 };
@@ -53,7 +52,7 @@ impl Track {
     /// constant generator, which may have moved the outline.
     pub(crate) fn keep_common_error(&mut self, dynamics: Option<&DynamicsFilter>) {
         if let Some(of_dynamics) = dynamics.and_then(DynamicsFilter::common_error) {
-            self.body_frame = BodyFrame::of(&(of_dynamics + self.body_frame.forgotten));
+            self.body_frame = BodyFrame::of(&(self.body_frame.covariance + of_dynamics + self.body_frame.forgotten));
         } else if let Some(common) = self.common_error() {
             self.body_frame = BodyFrame::of(&(self.body_frame.covariance + common));
         }
@@ -66,13 +65,13 @@ impl Track {
         moved_covariance(self.model(), &added, &self.belief.pose.try_inverse()?)
     }
 
-    /// Adds the common error that has been kept to a covariance of pose and motion in a pose.
-    pub(super) fn add_kept_error(&self, covariance: &mut StateMatrix, pose: &Matrix3<f64>) {
+    /// Adds the common error that has been kept to the covariance of pose and motion.
+    pub(crate) fn add_kept_error(&self, summary: &mut Summary) {
         if self.body_frame.covariance == PoseMatrix::zeros() {
             return;
         }
-        if let Some(in_image) = moved_covariance(self.model(), &self.body_frame.covariance, pose) {
-            let mut of_pose = covariance.fixed_view_mut::<MAX_PARAMETERS, MAX_PARAMETERS>(0, 0);
+        if let Some(in_image) = moved_covariance(self.model(), &self.body_frame.covariance, &summary.pose) {
+            let mut of_pose = summary.covariance.fixed_view_mut::<MAX_PARAMETERS, MAX_PARAMETERS>(0, 0);
             of_pose += in_image;
         }
     }

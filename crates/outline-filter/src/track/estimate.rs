@@ -40,9 +40,14 @@ pub(crate) enum TurnOfPose {
 impl Track {
     /// What is believed of pose and motion, normalised; `None` where the covariance cannot be computed.
     pub(crate) fn summary(&self) -> Option<Summary> {
-        let mut summary = self.summary_by(&self.belief.marginal)?;
-        self.add_kept_error(&mut summary.covariance, &summary.pose);
+        let mut summary = self.summary_in_body_frame()?;
+        self.add_kept_error(&mut summary);
         Some(summary)
+    }
+
+    /// As that, counted from the body frame, wherever that lies.
+    pub(crate) fn summary_in_body_frame(&self) -> Option<Summary> {
+        self.summary_by(&self.belief.marginal)
     }
 
     pub(super) fn summary_by(&self, marginal: &StateMatrix) -> Option<Summary> {
@@ -127,22 +132,15 @@ impl Track {
         if is_beyond_linear(belief.model, &null) {
             return None;
         }
-        let (summary, given_outline) = self.summary_beside_outline(&null)?;
+        let [summary, Summary { covariance: given_outline, .. }] = self.held_summaries(&null)?;
         let place = (self.map.centroid(), &*null);
         DynamicsFilter::begin(belief.model, setting, (&summary, &given_outline), place, belief.memory.step)
     }
 
-    /// What is believed, with all that poses have in common, and the covariance that it would have if the outline were known.
-    fn summary_beside_outline(&self, null: &[NullDirection]) -> Option<(Summary, StateMatrix)> {
-        let [mut summary, Summary { covariance: given_outline, .. }] = self.held_summaries(null)?;
-        self.add_kept_error(&mut summary.covariance, &summary.pose);
-        Some((summary, given_outline))
-    }
-
     /// Hands on to hypotheses of dynamics what the outline, as it is known now, adds to the errors of poses.
     pub(crate) fn renew_common_error(&self, dynamics: &mut DynamicsFilter) {
-        if let Some((summary, given_outline)) = self.summary_beside_outline(&self.null_directions()) {
-            dynamics.renew_common_error(&summary, &given_outline);
+        if let Some([summary, given_outline]) = self.held_summaries(&self.null_directions()) {
+            dynamics.renew_common_error(&summary, &given_outline.covariance);
         }
     }
 

@@ -7,7 +7,6 @@ use super::{
     body_frame::{BodyFrame, of_pose},
 };
 use crate::{
-    dynamics::Summary,
     map::NullDirection,
     prediction::{PoseMatrix, moved_covariance},
     tuning::null_space::{ANY_TURN, TAKES_PART},
@@ -50,9 +49,9 @@ impl Track {
         let mut other = other.clone();
         other.hide_turn();
         let null = other.null_directions();
-        let known = other.held_summaries(&null).map(|[Summary { mut covariance, .. }, _]| {
-            other.add_kept_error(&mut covariance, &pose);
-            of_pose(&covariance)
+        let known = other.held_summaries(&null).map(|[mut known, _]| {
+            other.add_kept_error(&mut known);
+            of_pose(&known.covariance)
         });
         let mut covariance = known.unwrap_or_default();
         for NullDirection { direction, .. } in &*null {
