@@ -49,6 +49,11 @@ impl LabelChoice {
                 "label masks: every value but 0 is an object, by its number ({labels} in the pictures looked at; --objects labels; --light takes what \
                  is lighter than a threshold instead)"
             )),
+            Self::Maybe(LabelEvidence { labels: 1, .. }) => Some(
+                "the pictures have a flat area with a border of 255 around it, as label masks with void borders have: --objects labels takes it for an \
+                 object that reaches to the middle of its border"
+                    .to_owned(),
+            ),
             Self::Maybe(LabelEvidence { labels, .. }) => Some(format!(
                 "the pictures have flat areas of {labels} values, as label masks have: --objects labels takes each value for an object"
             )),

@@ -1,7 +1,7 @@
 //! Whether pictures are label masks.
 use std::collections::BTreeMap;
 
-use crate::label_pictures::LabelPicture;
+use crate::label_pictures::{LabelPicture, Numbering};
 use crate::labels::SHORT_RUN;
 
 /// Share of the pixels beside the ground that may have scattered values: labels may be slivers where they leave the picture. Of a smoothed body of
@@ -15,11 +15,11 @@ const ENOUGH_PIXELS: usize = 4096;
 pub(crate) const LARGEST_NUMBER: i64 = 32;
 const LARGEST_PER_LABEL: i64 = 4;
 
-/// What speaks for it that pictures are label masks: their ground is 0, other values fill areas of them, and most pictures show two of them at least.
-/// A body whose grey value changes from picture to picture shows one.
+/// What speaks for it that pictures are label masks: their ground is 0, other values fill areas of them, and most pictures show two of them at least,
+/// or borders that are marked as void go around all of them. A body whose grey value changes from picture to picture shows one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LabelEvidence {
-    /// Different labels in the pictures that were looked at, two at least.
+    /// Different labels in the pictures that were looked at, two at least where no borders are marked as void.
     pub labels: usize,
     /// Whether they are small numbers, as labels are and grey values hardly ever. Places in a palette are small in drawings too, and count only in that of
     /// PASCAL VOC.
@@ -36,30 +36,42 @@ impl LabelEvidence {
         self.are_numbers && self.are_on_ground
     }
 
-    /// Looks at pictures; `None` where one of them is no label mask, or there are less than two labels.
+    /// Looks at pictures; `None` where one of them is no label mask, or there are less than two labels, unless their borders are marked as void.
     pub(crate) fn of(pictures: impl IntoIterator<Item = Option<LabelPicture>>) -> Option<Self> {
         let mut all: BTreeMap<i64, Border> = BTreeMap::new();
-        let (mut with_labels, mut with_several, mut has_own_palette) = (0_usize, 0, false);
+        let (mut with_labels, mut with_several, mut with_void) = (0_usize, 0, 0);
+        let (mut has_own_palette, mut are_of_voc) = (false, true);
         for picture in pictures {
             let picture = picture?;
-            has_own_palette |= picture.has_own_palette;
+            has_own_palette |= picture.numbering == Numbering::OwnPalette;
             let found = borders(&picture)?;
             with_labels += usize::from(!found.is_empty());
             with_several += usize::from(found.len() >= 2);
+            if !found.is_empty() {
+                with_void += usize::from(picture.had_void);
+                are_of_voc &= picture.numbering == Numbering::Voc;
+            }
             for (label, border) in found {
                 let known = all.entry(label).or_default();
                 known.on_ground += border.on_ground;
                 known.on_others += border.on_others;
             }
         }
-        if 2 * with_several <= with_labels {
+        let are_several = all.len() >= 2 && 2 * with_several > with_labels;
+        if !are_several && with_void < with_labels {
             return None;
         }
-        let largest = *all.last_key_value().filter(|_| all.len() >= 2)?.0;
+        let largest = *all.last_key_value()?.0;
+        let count = all.len() as i64;
+        let are_numbers = if are_several {
+            largest <= LARGEST_NUMBER || largest <= LARGEST_PER_LABEL * count
+        } else {
+            // A dark body with a light line around it may be drawn in any grey value.
+            largest <= count || are_of_voc
+        };
         Some(Self {
             labels: all.len(),
-            are_numbers: !has_own_palette
-                && (largest <= LARGEST_NUMBER || largest <= LARGEST_PER_LABEL * all.len() as i64),
+            are_numbers: are_numbers && !has_own_palette,
             are_on_ground: all.values().all(|border| border.on_ground >= border.on_others),
         })
     }
@@ -148,7 +160,7 @@ mod tests {
     fn picture(width: usize, height: usize, label: impl Fn(usize, usize) -> i64) -> Option<LabelPicture> {
         let labels = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
         let labels = labels.map(|(column, row)| label(column, row)).collect();
-        Some(LabelPicture { width, height, labels, has_own_palette: false, had_void: false })
+        Some(LabelPicture { width, height, labels, numbering: Numbering::Grey, had_void: false })
     }
 
     /// Two squares of these values.
@@ -169,6 +181,25 @@ mod tests {
         assert_eq!(convincing([7, 7]), None);
         // Each picture shows one of them.
         assert_eq!(LabelEvidence::of([squares([1, 1]), squares([2, 2])]), None);
+    }
+
+    /// A square of a value with a border of void that has been shared out.
+    fn square_with_void(value: i64, numbering: Numbering) -> Option<LabelPicture> {
+        Some(LabelPicture { numbering, had_void: true, ..squares([value, 0])? })
+    }
+
+    #[test]
+    fn one_object_with_a_void_border_is_a_label_beyond_doubt_by_the_number_1_or_by_the_palette() {
+        let convincing = |pictures: [Option<LabelPicture>; 2]| LabelEvidence::of(pictures).map(|e| e.is_convincing());
+        let of = |value, numbering| convincing([(); 2].map(|()| square_with_void(value, numbering)));
+        assert_eq!(of(1, Numbering::Grey), Some(true));
+        assert_eq!(of(15, Numbering::Voc), Some(true));
+        // A line around a body that is a little lighter than the ground may be drawn.
+        assert_eq!(of(15, Numbering::Grey), Some(false));
+        assert_eq!(of(1, Numbering::OwnPalette), Some(false));
+        // The other picture has no such border.
+        assert_eq!(convincing([square_with_void(1, Numbering::Grey), squares([1, 0])]), None);
+        assert_eq!(convincing([square_with_void(1, Numbering::Grey), squares([0, 0])]), Some(true));
     }
 
     #[test]

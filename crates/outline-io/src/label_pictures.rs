@@ -7,7 +7,7 @@ use image::{DynamicImage, GenericImageView as _, GrayImage, RgbaImage};
 
 use crate::frame::OutlineFrame;
 use crate::labels::{LabelMask, TracedLabel};
-use crate::palette::palette_of_png;
+use crate::palette::places_of_png;
 use crate::picture::read_picture_colours;
 use crate::picture_error::{PictureError, PictureErrorKind, TraceError};
 use crate::picture_sequence::DEFAULT_RATE;
@@ -22,11 +22,26 @@ const LEAST_GROUND: f64 = 0.5;
 /// Share of the largest part of a label from which on the next largest is told of.
 const LIKE_AN_OBJECT: f64 = 0.25;
 
+/// What is wrong with a label that has the edge of the picture all around.
+const AROUND_ALL: &str = "it lies around all others as ground does; the ground of label masks is 0, which is never an object: where this is the \
+                          ground, give it the number 0, and objects numbers from 1 on";
+
 /// Grey values that labels are drawn with: the darkest, and how many there are.
 const DRAWN: [u64; 2] = [96, 160];
 
 /// Step from one of these to that of the next label: neighbours are told apart.
 const DRAWN_STEP: u64 = 61;
+
+/// What the numbers of labels are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Numbering {
+    /// Grey values.
+    Grey,
+    /// Those of colours of the palette of PASCAL VOC.
+    Voc,
+    /// Places in another palette, as drawings have it too.
+    OwnPalette,
+}
 
 /// The labels of a picture.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -34,8 +49,7 @@ pub(crate) struct LabelPicture {
     pub(crate) width: usize,
     pub(crate) height: usize,
     pub(crate) labels: Vec<i64>,
-    /// Whether the labels are places in a palette other than that of PASCAL VOC, as drawings have it too.
-    pub(crate) has_own_palette: bool,
+    pub(crate) numbering: Numbering,
     /// Whether borders of objects were marked as void, and have been shared out among what they lie between.
     pub(crate) had_void: bool,
 }
@@ -44,7 +58,7 @@ impl LabelPicture {
     pub(crate) fn read(path: &Path) -> Result<Self, PictureError> {
         let not_labels = || PictureError::of_file(path.display().to_string(), PictureErrorKind::NotLabels);
         let picture = read_picture_colours(path)?;
-        Self::of(&picture, || palette_of_png(path)).ok_or_else(not_labels)
+        Self::of(&picture, || places_of_png(path)).ok_or_else(not_labels)
     }
 
     /// Of a picture that has ground around it, as label masks have: nothing is taken from others, which may be large.
@@ -60,34 +74,37 @@ impl LabelPicture {
         let along = (0..height).flat_map(|y| [(0, y), (width.saturating_sub(1), y)]);
         let ground = across.chain(along).filter(|(x, y)| *x < width && *y < height && is_ground(*x, *y)).count();
         let is_around = ground as f64 >= LEAST_GROUND * (2 * (u64::from(width) + u64::from(height))) as f64;
-        if is_around { Self::of(&picture, || palette_of_png(path)) } else { None }
+        if is_around { Self::of(&picture, || places_of_png(path)) } else { None }
     }
 
     /// The grey values, or the numbers of colours that label masks are painted with, those of PASCAL VOC or of a palette of the picture; nothing of other
     /// pictures. Borders that are marked as void are shared out.
-    pub(crate) fn of(picture: &DynamicImage, palette: impl FnOnce() -> Option<Vec<[u8; 3]>>) -> Option<Self> {
+    pub(crate) fn of(picture: &DynamicImage, places: impl FnOnce() -> Option<Vec<i64>>) -> Option<Self> {
         let (width, height) = (picture.width() as usize, picture.height() as usize);
-        let mut has_own_palette = false;
+        let mut numbering = Numbering::Grey;
         let labels = match picture {
             DynamicImage::ImageLuma8(grey) => grey.as_raw().iter().map(|value| i64::from(*value)).collect(),
             DynamicImage::ImageLuma16(grey) => grey.as_raw().iter().map(|value| i64::from(*value)).collect(),
             _ => {
                 let colours = plain_colours(picture)?;
                 let (pixels, _) = colours.as_raw().as_chunks::<4>();
-                labels_of_voc(pixels)
-                    .or_else(|| {
-                        let labels = numbers_in(&palette()?, pixels);
-                        has_own_palette = labels.is_some();
-                        labels
-                    })
-                    .or_else(|| grey_labels(pixels))?
+                let is_of_picture = |places: &Vec<i64>| places.len() == pixels.len();
+                if let Some(labels) = labels_of_voc(pixels) {
+                    numbering = Numbering::Voc;
+                    labels
+                } else if let Some(places) = places().filter(is_of_picture) {
+                    numbering = Numbering::OwnPalette;
+                    places
+                } else {
+                    grey_labels(pixels)?
+                }
             }
         };
         let (labels, had_void) = match without_void(&labels, width, height) {
             Some(labels) => (labels, true),
             None => (labels, false),
         };
-        Some(Self { width, height, labels, has_own_palette, had_void })
+        Some(Self { width, height, labels, numbering, had_void })
     }
 
     /// As it is drawn upon.
@@ -121,10 +138,10 @@ fn grey_labels(pixels: &[[u8; 4]]) -> Option<Vec<i64>> {
     are_grey.then(|| pixels.iter().map(|[grey, ..]| i64::from(*grey)).collect())
 }
 
-/// The numbers of colours that all are of a palette, of which the first of several that are alike counts.
+/// The numbers of colours that all are of a palette.
 fn numbers_in(palette: &[[u8; 3]], pixels: &[[u8; 4]]) -> Option<Vec<i64>> {
     let numbers: BTreeMap<[u8; 3], i64> =
-        palette.iter().enumerate().rev().map(|(number, colour)| (*colour, number as i64)).collect();
+        palette.iter().enumerate().map(|(number, colour)| (*colour, number as i64)).collect();
     let mut latest = (*palette.first()?, 0);
     let number = |[red, green, blue, _]: &[u8; 4]| {
         let colour = [*red, *green, *blue];
@@ -264,7 +281,11 @@ impl LabelPictures {
             Some((_, error)) if outlines.is_empty() => Err(error),
             None if outlines.is_empty() => Err(TraceError::Uniform { value: 0 }),
             refused => {
-                let left_out = refused.map(|(label, error)| LabelLeftOut { frame, label, reason: error.to_string() });
+                let reason = |error| match error {
+                    TraceError::FillsPicture => AROUND_ALL.to_owned(),
+                    error => error.to_string(),
+                };
+                let left_out = refused.map(|(label, error)| LabelLeftOut { frame, label, reason: reason(error) });
                 self.left_out = self.left_out.take().or(left_out);
                 Ok(outlines)
             }

@@ -1,76 +1,68 @@
-//! The palette of a PNG (PNG, third edition, sections 5.3 and 11.2.2).
+//! Places in the palette of a PNG (PNG, third edition, sections 5.3 and 11.2.2).
 use std::fs::File;
-use std::io::{BufReader, Read, Seek};
+use std::io::{BufRead, BufReader, Seek};
 use std::path::Path;
 
-const SIGNATURE: &[u8; 8] = b"\x89PNG\r\n\x1a\n";
+use png::{ColorType, Decoder, Transformations};
 
-/// Colour type of pictures whose pixels are places in a palette, and where it stands in the header.
-const INDEXED: u8 = 3;
-const COLOUR_TYPE: usize = 9;
-
-/// Chunks looked at before the palette.
-const MOST_CHUNKS: usize = 64;
-
-/// The colours of the palette of a PNG whose pixels are places in it, in their order; nothing of other files.
-pub(crate) fn palette_of_png(path: &Path) -> Option<Vec<[u8; 3]>> {
-    palette_of(&mut BufReader::new(File::open(path).ok()?))
+/// The places in its palette that the pixels of a PNG are, row by row; nothing of other files. Several places may have one colour.
+pub(crate) fn places_of_png(path: &Path) -> Option<Vec<i64>> {
+    places_of(BufReader::new(File::open(path).ok()?))
 }
 
-fn palette_of(source: &mut (impl Read + Seek)) -> Option<Vec<[u8; 3]>> {
-    let mut signature = [0; 8];
-    source.read_exact(&mut signature).ok()?;
-    if signature != *SIGNATURE {
+fn places_of(source: impl BufRead + Seek) -> Option<Vec<i64>> {
+    let mut decoder = Decoder::new(source);
+    decoder.set_transformations(Transformations::IDENTITY);
+    let mut reader = decoder.read_info().ok()?;
+    if reader.info().color_type != ColorType::Indexed {
         return None;
     }
-    for _ in 0..MOST_CHUNKS {
-        let mut head = [0; 8];
-        source.read_exact(&mut head).ok()?;
-        let [a, b, c, d, name @ ..] = head;
-        let length = u32::from_be_bytes([a, b, c, d]);
-        match &name {
-            b"IHDR" => {
-                let mut header = [0; 13];
-                source.read_exact(&mut header).ok()?;
-                if length as usize != header.len() || header[COLOUR_TYPE] != INDEXED {
-                    return None;
-                }
-                source.seek_relative(4).ok()?;
-            }
-            b"PLTE" => {
-                let mut colours = vec![0; length.min(3 * 256) as usize];
-                source.read_exact(&mut colours).ok()?;
-                let (colours, _) = colours.as_chunks::<3>();
-                return Some(colours.to_vec());
-            }
-            b"IDAT" | b"IEND" => return None,
-            // With its checksum.
-            _ => source.seek_relative(i64::from(length) + 4).ok()?,
-        }
-    }
-    None
+    let mut packed = vec![0; reader.output_buffer_size()?];
+    let frame = reader.next_frame(&mut packed).ok()?;
+    let (width, bits) = (frame.width as usize, frame.bit_depth as usize);
+    // Of less than eight bits several are in a byte, the first one highest.
+    let place = |line: &[u8], column: usize| {
+        let from = 8 - bits - column * bits % 8;
+        i64::from(line[column * bits / 8] >> from) & ((1 << bits) - 1)
+    };
+    let lines = packed.chunks_exact(frame.line_size).take(frame.height as usize);
+    Some(lines.flat_map(|line| (0..width).map(move |column| place(line, column))).collect())
 }
 
 #[cfg(test)]
 mod tests {
     use std::io::Cursor;
 
+    use png::{BitDepth, Encoder};
+
     use super::*;
 
-    fn chunk(name: &[u8; 4], data: &[u8]) -> Vec<u8> {
-        [&(data.len() as u32).to_be_bytes()[..], name, data, &[0; 4]].concat()
+    fn file(colour: ColorType, depth: BitDepth, [width, height]: [u32; 2], bytes: &[u8]) -> Vec<u8> {
+        let mut file = Vec::new();
+        let mut encoder = Encoder::new(&mut file, width, height);
+        encoder.set_color(colour);
+        encoder.set_depth(depth);
+        if colour == ColorType::Indexed {
+            // The last two places have one colour.
+            encoder.set_palette(vec![0, 0, 0, 230, 25, 75, 9, 9, 9, 9, 9, 9]);
+        }
+        encoder.write_header().and_then(|mut writer| writer.write_image_data(bytes)).expect("a picture");
+        file
     }
 
     #[test]
-    fn the_palette_is_found_behind_other_chunks_and_only_where_pixels_are_places_in_it() {
-        let file = |colour_type: u8| {
-            let header = [0, 0, 0, 1, 0, 0, 0, 1, 8, colour_type, 0, 0, 0];
-            let colours = chunk(b"PLTE", &[0, 0, 0, 230, 25, 75]);
-            [&SIGNATURE[..], &chunk(b"IHDR", &header), &chunk(b"gAMA", &[1, 2, 3, 4]), &colours].concat()
-        };
-        assert_eq!(palette_of(&mut Cursor::new(file(3))), Some(vec![[0; 3], [230, 25, 75]]));
-        assert_eq!(palette_of(&mut Cursor::new(file(2))), None);
-        let whole = file(3);
-        (0..whole.len() - 4).for_each(|length| assert_eq!(palette_of(&mut Cursor::new(&whole[..length])), None));
+    fn pixels_are_places_of_any_depth_and_two_places_of_one_colour_are_two() {
+        let two_bits = file(ColorType::Indexed, BitDepth::Two, [5, 2], &[0b0001_1011, 0b1100_0000, 0b1000_0000, 0]);
+        assert_eq!(places_of(Cursor::new(&two_bits)), Some(vec![0, 1, 2, 3, 3, 2, 0, 0, 0, 0]));
+        let eight = file(ColorType::Indexed, BitDepth::Eight, [2, 2], &[3, 2, 1, 0]);
+        assert_eq!(places_of(Cursor::new(&eight)), Some(vec![3, 2, 1, 0]));
+    }
+
+    #[test]
+    fn pictures_without_a_palette_and_files_that_end_early_have_no_places() {
+        assert_eq!(places_of(Cursor::new(file(ColorType::Grayscale, BitDepth::Eight, [2, 2], &[3, 2, 1, 0]))), None);
+        let whole = file(ColorType::Indexed, BitDepth::Eight, [2, 2], &[3, 2, 1, 0]);
+        // The last chunk, of 12 bytes, ends the file.
+        (0..whole.len() - 24).for_each(|length| assert_eq!(places_of(Cursor::new(&whole[..length])), None, "{length}"));
     }
 }

@@ -7,14 +7,14 @@ use serde_json::Value;
 use crate::support::{json, run, stderr, stdout, succeed};
 
 const FRAMES: u32 = 20;
-const SIZE: [u32; 2] = [240, 160];
+pub(crate) const SIZE: [u32; 2] = [240, 160];
 
 /// Angular velocities of the bodies, in rad/s and positive clockwise as one looks at the picture, and where they begin and how they move, in pixels.
 const BODIES: [(f64, [f64; 2], [f64; 2]); 3] =
     [(1.2, [50.0, 50.0], [30.0, 10.0]), (-0.8, [140.0, 70.0], [10.0, 40.0]), (0.6, [195.0, 50.0], [-5.0, 20.0])];
 
 /// The body that a pixel belongs to in a frame: letters L of 44 by 36 pixels.
-fn body(x: u32, y: u32, frame: u32) -> Option<usize> {
+pub(crate) fn body(x: u32, y: u32, frame: u32) -> Option<usize> {
     let time = f64::from(frame) / 25.0;
     BODIES.iter().position(|(omega, place, velocity)| {
         let (x, y) = (f64::from(x) - place[0] - velocity[0] * time, f64::from(y) - place[1] - velocity[1] * time);
@@ -24,14 +24,14 @@ fn body(x: u32, y: u32, frame: u32) -> Option<usize> {
     })
 }
 
-fn write(folder: &Path, picture: impl Fn(u32) -> DynamicImage) {
+pub(crate) fn write(folder: &Path, picture: impl Fn(u32) -> DynamicImage) {
     for frame in 0..FRAMES {
         picture(frame).save(folder.join(format!("m{frame}.png"))).expect("a picture");
     }
 }
 
 /// Masks of so many bits whose bodies have these values.
-fn write_masks(folder: &Path, bits: u32, labels: &[u16]) {
+pub(crate) fn write_masks(folder: &Path, bits: u32, labels: &[u16]) {
     let value = |x, y, frame| body(x, y, frame).and_then(|body| labels.get(body)).copied().unwrap_or(0);
     write(folder, |frame| match bits {
         8 => GrayImage::from_fn(SIZE[0], SIZE[1], |x, y| Luma([value(x, y, frame) as u8])).into(),
@@ -39,12 +39,12 @@ fn write_masks(folder: &Path, bits: u32, labels: &[u16]) {
     });
 }
 
-fn identified(folder: &Path, options: &str) -> Value {
+pub(crate) fn identified(folder: &Path, options: &str) -> Value {
     json(&succeed(&format!("identify {} --fps 25 --json --quiet {options}", folder.display()), ""))
 }
 
 /// Names of the objects with their angular velocities.
-fn omegas(document: &Value) -> Vec<(String, f64)> {
+pub(crate) fn omegas(document: &Value) -> Vec<(String, f64)> {
     let objects = document["objects"].as_array().expect("objects");
     let omega = |object: &Value| object["parameters"]["omega"]["value"].as_f64().unwrap_or(f64::NAN);
     objects.iter().map(|object| (object["object"].as_str().expect("a name").to_owned(), omega(object))).collect()
@@ -300,40 +300,27 @@ fn colours_of_another_palette_are_numbers_where_it_is_asked_for() {
 }
 
 #[test]
-fn borders_that_are_marked_as_void_belong_to_their_objects_up_to_the_middle_and_are_told_of() {
-    let void = |x: u32, y: u32, frame: u32| {
-        let own = body(x, y, frame);
-        let near = (-2..=2_i32).flat_map(|dx| (-2..=2_i32).map(move |dy| (dx, dy)));
-        let differs =
-            |(dx, dy): (i32, i32)| body(x.saturating_add_signed(dx), y.saturating_add_signed(dy), frame) != own;
-        near.filter(|(dx, dy)| dx * dx + dy * dy <= 5).any(differs)
-    };
+fn two_places_of_one_colour_in_a_palette_are_two_labels() {
     let folder = tempfile::tempdir().expect("a folder");
-    let value = |x: u32, y: u32, frame: u32| {
-        if void(x, y, frame) { 255 } else { body(x, y, frame).map_or(0, |body| [1, 2, 3][body]) }
-    };
+    let palette = [[0, 0, 0], [200, 30, 30], [200, 30, 30], [20, 200, 20]];
+    for frame in 0..FRAMES {
+        let path = folder.path().join(format!("m{frame}.png"));
+        write_indexed(&path, &palette, |x, y| body(x, y, frame).map_or(0, |body| [1, 2, 3][body]));
+    }
+    let found = omegas(&identified(folder.path(), "--objects labels"));
+    for (label, (truth, ..)) in ["1", "2", "3"].iter().zip(BODIES) {
+        let (_, omega) = found.iter().find(|(name, _)| name == label).expect("the label");
+        assert!((omega - truth).abs() < 0.05, "{found:?}");
+    }
+}
+
+#[test]
+fn masks_whose_ground_is_another_number_than_0_are_told_what_to_give() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let value = |x: u32, y: u32, frame: u32| body(x, y, frame).map_or(255, |body| [0, 1, 2][body]);
     write(folder.path(), |frame| GrayImage::from_fn(SIZE[0], SIZE[1], |x, y| Luma([value(x, y, frame)])).into());
-    let plain = tempfile::tempdir().expect("a folder");
-    write_masks(plain.path(), 8, &[1, 2, 3]);
-    let area = |folder: &Path| {
-        let table = succeed(&format!("outline {} --fps 25", folder.display()), "");
-        let points =
-            table.lines().filter(|line| line.starts_with("0,")).map(|line| line.split(',').collect::<Vec<_>>());
-        let points: Vec<(f64, f64)> = points
-            .filter(|cells| cells[4] == "1")
-            .map(|cells| (cells[2].parse().expect("x"), cells[3].parse().expect("y")))
-            .collect();
-        let pairs = points.iter().zip(points.iter().cycle().skip(1));
-        0.5 * pairs.map(|((x, y), (u, v))| x * v - u * y).sum::<f64>().abs()
-    };
-    let [with_void, without] = [area(folder.path()), area(plain.path())];
-    assert!((with_void / without - 1.0).abs() < 0.03, "{with_void} {without}");
-    let document = identified(folder.path(), "");
-    let found = omegas(&document);
-    assert_eq!(found.len(), 3, "{found:?}");
-    assert_eq!(document["warnings"][0]["code"], "void_borders");
     let told = stderr(&run(&format!("outline {} --fps 25 --objects labels", folder.path().display()), ""));
-    assert!(told.contains("marked as void (255)"), "{told}");
+    assert!(told.contains("frame 0, label 255: ") && told.contains("give it the number 0"), "{told}");
 }
 
 #[test]

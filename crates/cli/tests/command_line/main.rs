@@ -42,4 +42,5 @@ mod tables;
 mod tracing;
 mod track;
 mod trajectory;
+mod void_borders;
 mod whole_files;

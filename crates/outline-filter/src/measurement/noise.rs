@@ -1,5 +1,5 @@
 //! Noise of the points: how much there is, whether it is correlated along the contour, and how much more of it corners have.
-use std::f64::consts::PI;
+use std::f64::consts::{PI, SQRT_2};
 
 #[cfg(feature = "serde")]
 use freeform_estimate::StateFormat;
@@ -105,6 +105,12 @@ impl Rounding {
     pub(crate) fn of_side(&self) -> f64 {
         ROUNDING * self.share * self.pixel
     }
+
+    /// Deviation of the place of such a side in one frame from that in another, of masks: an object that hardly moves shows the same pixels for a while,
+    /// and then whole sides go on by a pixel at once.
+    fn of_step(&self) -> f64 {
+        if self.share < 1.0 { 0.0 } else { SQRT_2 * self.of_side() }
+    }
 }
 
 /// Spread of the last frames, good ones and bad ones.
@@ -199,7 +205,8 @@ impl NoiseModel {
         )
     }
 
-    /// Most noise that a frame may have: by comparison with what most frames have shown, once there are any.
+    /// Most noise that a frame may have: by comparison with what most frames have shown, once there are any, and as much as sides of masks go on by at
+    /// once.
     pub(crate) fn tolerated(&self) -> f64 {
         self.tolerated_where(self.tolerance)
     }
@@ -216,7 +223,7 @@ impl NoiseModel {
         };
         let most =
             typical.map_or(at_first, |typical| (tuning::LARGEST_RATIO * typical.max(known)).min(tuning::LARGEST));
-        most.max(tuning::LARGEST_RATIO * known)
+        most.max(tuning::LARGEST_RATIO * known).max(self.rounding.of_step())
     }
 
     /// Points that tell as much as one with independent errors would, at least 1.
@@ -298,6 +305,20 @@ impl NoiseModel {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn frames_of_masks_may_scatter_as_sides_that_go_on_by_a_pixel_do_and_others_may_not() {
+        let tolerated = |rounding: Rounding| {
+            let mut noise = NoiseModel::new(1e-4);
+            noise.allow_for_rounding(rounding);
+            (0..9).for_each(|_| noise.record_spread(1e-4));
+            noise.tolerated()
+        };
+        let extent = (6.0, 400);
+        assert!((tolerated(Rounding::of_mask(0.02, extent)) / (0.02 * (1.0_f64 / 6.0).sqrt()) - 1.0).abs() < 0.01);
+        let interpolated = Rounding::on_lattice(0.02, PlaceOnLattice::Lines, 0.0, extent);
+        assert!(tolerated(interpolated) < 0.02 * 0.289);
+    }
 
     #[test]
     fn errors_are_independent_only_once_enough_frames_have_told_so() {

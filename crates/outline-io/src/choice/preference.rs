@@ -9,6 +9,12 @@ use crate::picture_outlines::PictureSettings;
 /// What moves by less than this share of its size in all may rest: its outline may change where something in front of it moves.
 const HARDLY_MOVES: f64 = 0.1;
 
+/// What moves by so many of its sizes is nowhere where it was.
+const LEAVES: f64 = 1.0;
+
+/// Share of the score of what rests that something else has that is told hardly less well.
+const HARDLY_LESS: f64 = 0.5;
+
 /// Puts what moves in front of the best way where that shows what rests, or is in doubt. Where the best does neither, but is not seen well or hardly
 /// moves, it says what else moves. `known` is what has been found to move in place of a way.
 pub(super) fn preferring_what_moves(
@@ -47,8 +53,22 @@ pub(super) fn preferring_what_moves(
         candidates.insert(0, moving);
         return None;
     }
+    if let Some(place) = rests.and_then(|_| leaves_its_place(candidates, sample.size())) {
+        candidates[..=place].rotate_right(1);
+        return None;
+    }
     let changes = motion.changes.filter(|changes| changes.are_many())?;
     Some(TracingWarning::MovesBesideRest { seen: changes.seen, pictures: changes.pictures })
+}
+
+/// The first way whose object leaves its place, where it is told beyond doubt, and hardly less well than what rests, the best. It has seen it whole,
+/// though differences from the median of the pictures have not.
+fn leaves_its_place(candidates: &[TracingEvidence], (columns, rows): (u32, u32)) -> Option<usize> {
+    let least = TracingChoice::CONVINCING.max(HARDLY_LESS * candidates.first()?.score);
+    candidates.iter().position(|way| {
+        let size = (way.area_share * f64::from(columns) * f64::from(rows)).sqrt();
+        !way.rests && way.score >= least && way.movement > LEAVES * size
+    })
 }
 
 /// What moves beside what `rests`, or beside `others`, where the pictures can show it.
@@ -61,4 +81,48 @@ pub(super) fn motion_beside(
 ) -> Option<Motion> {
     let may_show = !sample.is_two_valued() && sample.len() >= FEWEST_FOR_MEDIAN;
     may_show.then(|| what_moves(sample, base, channel, rests, others))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::choice::TracingWay;
+    use crate::identity::Selection;
+    use crate::trace_settings::Smoothing;
+
+    /// What shows a thing of 20 by 20 pixels in pictures of 200 by 100.
+    fn way(rests: bool, score: f64, movement: f64) -> TracingEvidence {
+        let smoothing = Smoothing::Automatic;
+        TracingEvidence {
+            tracing: Tracing { way: TracingWay::Lighter, channel: Channel::Luminance, smoothing, level: None },
+            pictures: 15,
+            found: 15,
+            steadiness: 1.0,
+            evenness: 1.0,
+            contrast: 1.0,
+            smoothness: 1.0,
+            movement,
+            rests,
+            clipped: 0.0,
+            area_share: 0.02,
+            objects: 1,
+            second: 0.0,
+            selection: Selection::Largest,
+            inner_share: 0.0,
+            has_steady_contours: false,
+            score,
+        }
+    }
+
+    #[test]
+    fn what_leaves_its_place_is_found_where_it_is_told_hardly_less_well_than_what_rests() {
+        let found = |other: TracingEvidence| leaves_its_place(&[way(true, 0.2, 0.5), other], (200, 100));
+        assert_eq!(found(way(false, 0.15, 30.0)), Some(1));
+        // It is in doubt, hardly moves, or rests as well.
+        assert_eq!(found(way(false, 0.11, 30.0)), None);
+        assert_eq!(found(way(false, 0.15, 15.0)), None);
+        assert_eq!(found(way(true, 0.15, 30.0)), None);
+        // What rests is told far better.
+        assert_eq!(leaves_its_place(&[way(true, 0.6, 0.5), way(false, 0.15, 30.0)], (200, 100)), None);
+    }
 }
