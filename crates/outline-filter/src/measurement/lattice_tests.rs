@@ -82,3 +82,15 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn points_along_a_contour_that_are_rounded_to_pixels_are_a_chain_also_where_they_repeat() {
+    let at = |i: u16| {
+        let angle = std::f64::consts::TAU * f64::from(i) / 200.0;
+        Point2::new((16.3 * angle.cos()).round(), (12.1 * angle.sin()).round())
+    };
+    let points: Vec<_> = (0..200).map(at).collect();
+    assert!(points.windows(2).filter(|pair| pair[0] == pair[1]).count() > 80);
+    let lattice = found(&points, 0.025, Vector2::zeros()).expect("a lattice");
+    assert_eq!((lattice.place, (lattice.pixel / 0.025).round()), (PlaceOnLattice::Chain, 1.0));
+}

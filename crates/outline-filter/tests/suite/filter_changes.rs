@@ -291,3 +291,22 @@ fn the_pose_of_an_object_that_is_pushed_again_and_again_is_within_its_deviations
     println!("{rejected} not used, {wide} of little worth");
     assert!(rejected > 5 && wide < 20, "{rejected} {wide}");
 }
+
+#[test]
+fn a_copy_of_a_frame_is_no_measurement_of_a_motion_that_changes() {
+    let swinging = |t: f64| AffineMotion::from(RigidMotion { omega: 3.0 * (4.0 * t).sin(), b1: 0.2, b2: -0.1 });
+    let (mut copies, mut taken) = (0, 0);
+    for seed in 0..6 {
+        let frames = frames_of(BuiltInShape::Glider, Motion::varying(swinging), settings(90, seed));
+        let mut run = filter(MotionModel::Rigid);
+        for frame in &frames {
+            let is_copy = frame.index > 9 && frame.index % 5 == 0;
+            let shown = if is_copy { frame.index - 1 } else { frame.index };
+            let step = run.step(frame.time, &frames[shown].outline).expect("increasing times");
+            copies += u32::from(is_copy);
+            taken += u32::from(is_copy && step.is_accepted());
+        }
+    }
+    // One in five was taken to show a body at rest.
+    assert!(20 * taken < copies, "{taken} of {copies} copies");
+}
