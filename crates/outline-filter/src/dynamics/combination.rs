@@ -30,6 +30,8 @@ pub(crate) enum Purpose {
 #[derive(Debug, Clone, Copy)]
 struct Part<const N: usize> {
     weight: f64,
+    /// Weight in what is stated of the errors: no less than of late.
+    counted: f64,
     mean: SVector<f64, N>,
     /// None for the least probable hypotheses, which have less than 5 % together: only their means count.
     covariance: Option<SMatrix<f64, N, N>>,
@@ -41,8 +43,8 @@ struct Part<const N: usize> {
 
 impl<const N: usize> InteractingHypotheses<N> {
     /// The weight below which hypotheses are left out: all of them together are less probable than what lies outside of an interval.
-    fn least_weight(&self, outside: f64) -> f64 {
-        let mut sorted = self.weights;
+    fn least_weight(weights: &[f64; MOST], outside: f64) -> f64 {
+        let mut sorted = *weights;
         sorted.sort_unstable_by(f64::total_cmp);
         let mut sum = 0.0;
         sorted
@@ -136,11 +138,12 @@ impl<const N: usize> InteractingHypotheses<N> {
             _ => all().fold(SVector::zeros(), |mean, part| mean + part.mean * (part.weight / sum)),
         };
         let change = if purpose == Purpose::Statement { self.possible_change() } else { None };
-        let reach = if of_generator.is_some() { reach_of(1.0 - self.weights().generator / sum) } else { 1.0 };
+        let counted: f64 = all().map(|part| part.counted).sum();
+        let reach = if of_generator.is_some() { reach_of(1.0 - self.weights().generator / counted) } else { 1.0 };
         let mut covariance = SMatrix::<f64, N, N>::zeros();
         let (mut measured, mut accelerated) = (0.0, 0.0);
         for part in all() {
-            let (weight, x) = (part.weight / sum, &part.mean);
+            let (weight, x) = (part.counted / counted, &part.mean);
             measured += if part.is_measured { weight } else { 0.0 };
             accelerated += if part.accelerates { weight } else { 0.0 };
             for j in 0..2 * k {
@@ -166,27 +169,37 @@ impl<const N: usize> InteractingHypotheses<N> {
         of_generator: Option<(SVector<f64, N>, SMatrix<f64, N, N>)>,
         purpose: Purpose,
     ) -> [Option<Part<N>>; MOST] {
-        let likely = self.least_weight(tuning::OUTSIDE_INTERVAL);
+        // What explained the frames of late may be needed again in the next.
+        let counted: [f64; MOST] = match purpose {
+            Purpose::Prediction | Purpose::PredictionByOthers => self.weights,
+            Purpose::Statement => std::array::from_fn(|number| {
+                let remembers = |hypothesis: &Hypothesis<N>| hypothesis.course.memory() >= tuning::REMEMBERED;
+                let of_late = self.hypotheses.get(number).filter(|hypothesis| remembers(hypothesis));
+                self.weights[number].max(of_late.map_or(0.0, |_| self.recent_weights[number]))
+            }),
+        };
+        let likely = Self::least_weight(&counted, tuning::OUTSIDE_INTERVAL);
         let least = match purpose {
             Purpose::Prediction | Purpose::PredictionByOthers => likely,
-            Purpose::Statement => self.least_weight(tuning::OUTSIDE_THREE_DEVIATIONS),
+            Purpose::Statement => Self::least_weight(&counted, tuning::OUTSIDE_THREE_DEVIATIONS),
         };
         std::array::from_fn(|number| {
             let (hypothesis, weight) = (self.hypotheses.get(number)?, self.weights[number]);
+            let counted = counted[number];
             let is_generator = hypothesis.course == Course::ConstantGenerator;
             let has_generator = is_generator || matches!(hypothesis.course, Course::Shaken { .. });
-            let takes_part = weight >= least && !(has_generator && purpose == Purpose::PredictionByOthers);
+            let takes_part = counted >= least && !(has_generator && purpose == Purpose::PredictionByOthers);
             takes_part.then(|| match of_generator.filter(|_| is_generator) {
                 Some((mean, covariance)) => {
                     let covariance = Some(covariance);
-                    Part { weight, mean, covariance, is_measured: self.outline_has_moved, accelerates: false }
+                    Part { weight, counted, mean, covariance, is_measured: self.outline_has_moved, accelerates: false }
                 }
                 None => {
                     let hypothesis = &*self.blended(number, hypothesis);
                     let mean = self.mean_of(hypothesis);
-                    let covariance = (weight >= likely).then(|| self.covariance_of(hypothesis));
+                    let covariance = (counted >= likely).then(|| self.covariance_of(hypothesis));
                     let accelerates = matches!(hypothesis.course, Course::Accelerating { .. });
-                    Part { weight, mean, covariance, is_measured: true, accelerates }
+                    Part { weight, counted, mean, covariance, is_measured: true, accelerates }
                 }
             })
         })

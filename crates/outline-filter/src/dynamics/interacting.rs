@@ -47,6 +47,8 @@ pub(crate) struct InteractingHypotheses<const N: usize> {
     pub(super) steady_change: Option<SteadyChange<N>>,
     /// In the same order; zeros behind them.
     pub(super) weights: Weights,
+    /// Means of them over the last frames in which the motion was changing; zeros where it never was.
+    pub(super) recent_weights: Weights,
     /// What the errors of all poses are taken from.
     pub(super) reference: CentredPose,
     /// Variance of a pose as one frame tells it.
@@ -97,6 +99,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             arrivals: Vec::with_capacity(MOST),
             steady_change: None,
             weights: [0.0; MOST],
+            recent_weights: [0.0; MOST],
             reference,
             pose_variance,
             common,
@@ -269,6 +272,10 @@ impl<const N: usize> InteractingHypotheses<N> {
                 self.steady_change = None;
             }
         }
+        for (recent, weight) in self.recent_weights.iter_mut().zip(&self.weights) {
+            let now = if self.leads { *weight } else { 0.0 };
+            *recent += tuning::RECENT_GAIN * (now - *recent);
+        }
     }
 
     /// Records that the motion has changed in a way that no hypothesis models.
@@ -354,7 +361,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             && 3 * model.parameter_count() == N
             && followed.eq(Course::all_of(self.setting))
             && self.hypotheses.iter().all(|h| is_finite(h.mean.as_slice()) && is_finite(h.covariance.as_slice()))
-            && weights.iter().all(|weight| (0.0..=1.0).contains(weight))
+            && weights.iter().chain(&self.recent_weights).all(|weight| (0.0..=1.0).contains(weight))
             && (weights.iter().sum::<f64>() - 1.0).abs() < SUM_OFF
             && beyond.iter().all(|weight| *weight == 0.0)
             && is_finite(self.reference.pose.as_slice())

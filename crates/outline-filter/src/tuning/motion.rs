@@ -94,6 +94,11 @@ pub(crate) mod dynamics {
     pub(crate) const OUTSIDE_INTERVAL: f64 = 0.05;
     /// Probability of what lies outside of an interval of three deviations: what is less improbable widens the deviations that are stated.
     pub(crate) const OUTSIDE_THREE_DEVIATIONS: f64 = 0.0027;
+    /// Share of a frame in the mean of weights over the last frames. A body that swings looks, as it is fastest or turns round, for about ten frames as if
+    /// its motion hardly changed.
+    pub(crate) const RECENT_GAIN: f64 = 1.0 / 16.0;
+    /// Steps that a hypothesis remembers at least whose mean counts: what explains a sudden push says nothing of the frames after it.
+    pub(crate) const REMEMBERED: f64 = 4.0;
     /// Deviations of a pose that an acceleration which begins moves the object by over the steps that its level remembers.
     pub(crate) const FIRST_ACCELERATION: f64 = 3.0;
     /// Share of the variance of an expected pose that what has changed to a hypothesis may add to it: more is kept apart until a frame has been seen. A

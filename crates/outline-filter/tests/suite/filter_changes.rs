@@ -310,3 +310,29 @@ fn a_copy_of_a_frame_is_no_measurement_of_a_motion_that_changes() {
     // One in five was taken to show a body at rest.
     assert!(20 * taken < copies, "{taken} of {copies} copies");
 }
+
+/// Where it is fastest, its speed hardly changes for ten frames.
+#[test]
+fn a_body_that_swings_slowly_is_not_said_to_move_steadily_where_it_is_fastest() {
+    let omega = |t: f64| 0.5 + 0.39 * (1.3 * t).cos();
+    let swinging = move |t: f64| {
+        let middle = Vector2::new(0.5 * (0.7 * t).sin(), 0.4 * ((0.9 * t + 1.0).sin() - 1.0_f64.sin()));
+        let velocity = Vector2::new(0.35 * (0.7 * t).cos(), 0.36 * (0.9 * t + 1.0).cos());
+        let omega = omega(t);
+        AffineMotion::from(RigidMotion { omega, b1: velocity.x - omega * middle.y, b2: velocity.y + omega * middle.x })
+    };
+    let (mut off, mut stated) = (0, 0);
+    for seed in 0..4 {
+        let settings = Settings { points: 60, noise: 0.002, ..settings(900, seed) };
+        let mut run = filter(MotionModel::Rigid);
+        for frame in &frames_of(BuiltInShape::Glider, Motion::varying(swinging), settings) {
+            run.step(frame.time, &frame.outline).expect("increasing times");
+            let Some(estimate) = run.estimate().filter(|_| frame.index > 30) else { continue };
+            let found = estimate.parameters().next().expect("omega comes first");
+            let Some((value, deviation)) = found.value.zip(found.standard_deviation) else { continue };
+            stated += 1;
+            off += u32::from((value - omega(frame.time)).abs() > 4.0 * deviation);
+        }
+    }
+    assert!(stated > 3000 && 1000 * off < stated, "{off} of {stated}");
+}
