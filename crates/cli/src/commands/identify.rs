@@ -276,7 +276,7 @@ fn nothing_found(name: &str, results: &[ObjectResult]) -> Failure {
             "{name}: no motion of object {object:?}: {frames_rejected} of {frames} frame(s) rejected, {reason}"
         )),
         None => Failure::no_result(format_args!(
-            "{name}: no motion of object {object:?}: {used} frame(s), at least 2 are needed"
+            "{name}: no motion of object {object:?}: {used} frame(s), at least 2 are needed, and 3 where the first shows a part of the outline"
         )),
     }
 }
