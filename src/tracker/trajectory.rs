@@ -188,8 +188,8 @@ impl Trajectory {
         rows.collect()
     }
 
-    /// Lets later frames take part, object by object, within each run of frames through which an object was followed. The frame that such a run
-    /// began with, when the motion was not known yet, gets its pose from the ones after it. `tracker` is the one that followed the objects.
+    /// Lets later frames take part, object by object, within each run of frames through which an object was followed. The frames that such a run
+    /// began with, when the motion was not known yet, get their poses from the ones after them. `tracker` is the one that followed the objects.
     ///
     /// Returns the objects that are not smoothed, in the order of their first rows: above all those whose motion was seen to change, as the
     /// smoother assumes a constant one. Their rows stay as filtered.
@@ -237,9 +237,11 @@ fn smooth_object(rows: &mut [&mut TrajectoryRow], noise: &ProcessNoise) -> Resul
         let (before, from) = rows.split_at_mut(start);
         // What the last frame does not tell of a constant motion, for an ambiguous turn say, none does; what it tells, all do.
         let velocity_not_stated = from[count - 1].velocity_not_stated;
-        let before = before.last_mut().filter(|row| row.accepted);
-        if let (Some(before), Some(first)) = (before, states.first()) {
-            before.state = before.time.map(|time| first.predicted(time, noise));
+        let segment = from[0].segment;
+        let began = before.iter_mut().rev();
+        let began = began.take_while(|row| row.accepted && row.segment == segment && row.state().is_none());
+        for before in began {
+            before.state = before.time.zip(states.first()).map(|(time, first)| first.predicted(time, noise));
             before.velocity_not_stated = velocity_not_stated;
         }
         let known = from[..count].iter_mut().filter(|row| row.state().is_some());
