@@ -237,12 +237,12 @@ fn smooth_object(rows: &mut [&mut TrajectoryRow], noise: &ProcessNoise) -> Resul
         let (before, from) = rows.split_at_mut(start);
         // What the last frame does not tell of a constant motion, for an ambiguous turn say, none does; what it tells, all do.
         let velocity_not_stated = from[count - 1].velocity_not_stated;
-        let segment = from[0].segment;
-        let began = before.iter_mut().rev();
-        let began = began.take_while(|row| row.accepted && row.segment == segment && row.state().is_none());
-        for before in began {
-            before.state = before.time.zip(states.first()).map(|(time, first)| first.predicted(time, noise));
-            before.velocity_not_stated = velocity_not_stated;
+        let (segment, first) = (from[0].segment, &states[0]);
+        let is_of_beginning =
+            |row: &&mut &mut TrajectoryRow| row.accepted && row.segment == segment && row.state.is_none();
+        for row in before.iter_mut().rev().take_while(is_of_beginning) {
+            row.state = row.time.map(|time| first.predicted(time, noise));
+            row.velocity_not_stated = velocity_not_stated;
         }
         let known = from[..count].iter_mut().filter(|row| row.state().is_some());
         known.zip(states).for_each(|(row, state)| {

@@ -158,7 +158,8 @@ impl PyMotionFilter {
         Ok(PyFilterStep { inner })
     }
 
-    /// The motion estimated so far, with its covariance; None before the second accepted frame.
+    /// The motion estimated so far, with its covariance; None before the second accepted frame, and before the third where the first shows a
+    /// part of the outline.
     #[getter]
     fn estimate(&self) -> Option<PyEstimate> {
         let filter = self.lock();

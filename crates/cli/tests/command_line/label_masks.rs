@@ -281,19 +281,24 @@ fn write_indexed(path: &Path, palette: &[[u8; 3]], index: impl Fn(u32, u32) -> u
     encoder.write_header().and_then(|mut writer| writer.write_image_data(&places)).expect("a picture");
 }
 
+/// Writes masks whose bodies are these places in a palette, and follows each by that number.
+fn assert_places_are_labels(folder: &Path, palette: &[[u8; 3]], places: [u8; 3]) {
+    for frame in 0..FRAMES {
+        let path = folder.join(format!("m{frame}.png"));
+        write_indexed(&path, palette, |x, y| body(x, y, frame).map_or(0, |body| places[body]));
+    }
+    let found = omegas(&identified(folder, "--objects labels"));
+    for (label, (truth, ..)) in places.iter().zip(BODIES) {
+        let (_, omega) = found.iter().find(|(name, _)| *name == label.to_string()).expect("the label");
+        assert!((omega - truth).abs() < 0.05, "{found:?}");
+    }
+}
+
 #[test]
 fn colours_of_another_palette_are_numbers_where_it_is_asked_for() {
     let folder = tempfile::tempdir().expect("a folder");
     let palette = [[0, 0, 0], [230, 25, 75], [60, 180, 75], [0, 130, 200]];
-    for frame in 0..FRAMES {
-        let path = folder.path().join(format!("m{frame}.png"));
-        write_indexed(&path, &palette, |x, y| body(x, y, frame).map_or(0, |body| [3, 1, 2][body]));
-    }
-    let found = omegas(&identified(folder.path(), "--objects labels"));
-    for (label, (truth, ..)) in ["3", "1", "2"].iter().zip(BODIES) {
-        let (_, omega) = found.iter().find(|(name, _)| name == label).expect("the label");
-        assert!((omega - truth).abs() < 0.05, "{found:?}");
-    }
+    assert_places_are_labels(folder.path(), &palette, [3, 1, 2]);
     // A drawing may have a palette too: it is told of, and traced as it is.
     let told = stderr(&run(&format!("outline {} --fps 25", folder.path().display()), ""));
     assert!(told.contains("flat areas of 3 values") && !told.contains("label masks: every value"), "{told}");
@@ -303,15 +308,7 @@ fn colours_of_another_palette_are_numbers_where_it_is_asked_for() {
 fn two_places_of_one_colour_in_a_palette_are_two_labels() {
     let folder = tempfile::tempdir().expect("a folder");
     let palette = [[0, 0, 0], [200, 30, 30], [200, 30, 30], [20, 200, 20]];
-    for frame in 0..FRAMES {
-        let path = folder.path().join(format!("m{frame}.png"));
-        write_indexed(&path, &palette, |x, y| body(x, y, frame).map_or(0, |body| [1, 2, 3][body]));
-    }
-    let found = omegas(&identified(folder.path(), "--objects labels"));
-    for (label, (truth, ..)) in ["1", "2", "3"].iter().zip(BODIES) {
-        let (_, omega) = found.iter().find(|(name, _)| name == label).expect("the label");
-        assert!((omega - truth).abs() < 0.05, "{found:?}");
-    }
+    assert_places_are_labels(folder.path(), &palette, [1, 2, 3]);
 }
 
 #[test]

@@ -172,11 +172,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         // What explained the frames of late may be needed again in the next.
         let counted: [f64; MOST] = match purpose {
             Purpose::Prediction | Purpose::PredictionByOthers => self.weights,
-            Purpose::Statement => std::array::from_fn(|number| {
-                let remembers = |hypothesis: &Hypothesis<N>| hypothesis.course.memory() >= tuning::REMEMBERED;
-                let of_late = self.hypotheses.get(number).filter(|hypothesis| remembers(hypothesis));
-                self.weights[number].max(of_late.map_or(0.0, |_| self.recent_weights[number]))
-            }),
+            Purpose::Statement => std::array::from_fn(|number| self.weights[number].max(self.recent_weights[number])),
         };
         let likely = Self::least_weight(&counted, tuning::OUTSIDE_INTERVAL);
         let least = match purpose {

@@ -47,7 +47,7 @@ pub(crate) struct InteractingHypotheses<const N: usize> {
     pub(super) steady_change: Option<SteadyChange<N>>,
     /// In the same order; zeros behind them.
     pub(super) weights: Weights,
-    /// Means of them over the last frames in which the motion was changing; zeros where it never was.
+    /// Means over the last frames of those which remember several steps, none in frames in which no changing motion led.
     pub(super) recent_weights: Weights,
     /// What the errors of all poses are taken from.
     pub(super) reference: CentredPose,
@@ -272,9 +272,10 @@ impl<const N: usize> InteractingHypotheses<N> {
                 self.steady_change = None;
             }
         }
-        for (recent, weight) in self.recent_weights.iter_mut().zip(&self.weights) {
-            let now = if self.leads { *weight } else { 0.0 };
-            *recent += tuning::RECENT_GAIN * (now - *recent);
+        let weights = self.hypotheses.iter().zip(&self.weights);
+        for (recent, (hypothesis, weight)) in self.recent_weights.iter_mut().zip(weights) {
+            let counts = self.leads && hypothesis.course.memory() >= tuning::REMEMBERED;
+            *recent += tuning::RECENT_GAIN * (if counts { *weight } else { 0.0 } - *recent);
         }
     }
 

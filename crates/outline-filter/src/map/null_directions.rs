@@ -2,7 +2,7 @@
 use std::{array, iter::Take, ops::Deref};
 
 use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector};
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, SMatrix, SVector};
 
 /// A null direction in the image: Jacobians of measurements lose `(h . direction) dual`.
 #[derive(Debug, Clone, Copy, Default)]
@@ -17,6 +17,12 @@ impl NullDirection {
     pub(crate) fn project_out(&self, jacobian: &mut ParameterVector) {
         let along: f64 = jacobian.iter().zip(&self.direction).map(|(a, b)| a * b).sum();
         jacobian.iter_mut().zip(&self.dual).for_each(|(r, d)| *r -= along * d);
+    }
+
+    /// The covariance of a motion along the direction, by as much as that is long.
+    pub(crate) fn square(&self) -> SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS> {
+        let direction = SVector::from(self.direction);
+        direction * direction.transpose()
     }
 
     /// The direction in other coordinates, which a map takes those that it is in to.

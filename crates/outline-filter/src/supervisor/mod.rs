@@ -3,6 +3,7 @@ mod acquisition;
 mod ambiguity;
 mod candidate;
 mod clock;
+mod counts;
 mod edges;
 mod error;
 mod expected_outline;

@@ -2,9 +2,10 @@
 use freeform_curve_fit::Outline;
 
 use super::{
+    counts::Counts,
     error::FilterError,
     motion_change::MotionHistory,
-    motion_filter::{Counts, MotionFilter, Phase},
+    motion_filter::{MotionFilter, Phase},
     settings::FilterSettings,
     turn_hypotheses::TurnHypotheses,
     window::InitialisationWindow,

@@ -2,7 +2,8 @@
 use freeform_estimate::{StateError, StateFormat};
 
 use super::{
-    motion_filter::{Counts, MotionFilter, Phase},
+    counts::Counts,
+    motion_filter::{MotionFilter, Phase},
     repeated_frames::BeforeRepeated,
 };
 use crate::track::{SavedCells, Track};

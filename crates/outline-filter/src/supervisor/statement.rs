@@ -4,7 +4,8 @@ use freeform_riccati::MAX_PARAMETERS;
 use nalgebra::DMatrix;
 
 use super::{
-    motion_filter::{Counts, MotionFilter, Phase},
+    counts::Counts,
+    motion_filter::{MotionFilter, Phase},
     stated::Statement,
 };
 use crate::{

@@ -41,9 +41,7 @@ impl BodyFrame {
 
     /// Takes nothing to be known along directions in the body frame that the outline did not show so far.
     pub(super) fn forget(&mut self, directions: &[NullDirection]) {
-        for NullDirection { direction, .. } in directions {
-            self.forgotten += PoseMatrix::from_fn(|i, j| direction[i] * direction[j]);
-        }
+        self.forgotten += directions.iter().map(NullDirection::square).sum::<PoseMatrix>();
     }
 }
 
@@ -61,8 +59,17 @@ impl Track {
     /// Its covariance as far as the information on the pose has it: what is not known of the pose, beyond what would not be if the outline were.
     fn common_error(&self) -> Option<PoseMatrix> {
         let [believed, given_outline] = self.held_summaries(&self.null_directions())?;
-        let added = of_pose(&believed.covariance) - of_pose(&given_outline.covariance);
-        moved_covariance(self.model(), &added, &self.belief.pose.try_inverse()?)
+        self.in_body_frame(&(of_pose(&believed.covariance) - of_pose(&given_outline.covariance)))
+    }
+
+    /// The covariance of an error of the pose that it is in, on the left, as one in the body frame.
+    pub(super) fn in_body_frame(&self, covariance: &PoseMatrix) -> Option<PoseMatrix> {
+        moved_covariance(self.model(), covariance, &self.belief.pose.try_inverse()?)
+    }
+
+    /// How far such an error moves the cells at most, root mean square, in the body frame.
+    pub(super) fn farthest_displacement(&self, covariance: &PoseMatrix) -> Option<f64> {
+        self.map.farthest_displacement(self.model(), &self.in_body_frame(covariance)?)
     }
 
     /// Adds the common error that has been kept to the covariance of pose and motion.

@@ -10,7 +10,7 @@ use crate::{
         CentredDeviations, Dynamics, DynamicsFilter, Summary, UnmodelledEstimate, centred_order, is_beyond_linear,
     },
     map::{CLOCKWISE, NullDirection},
-    prediction::{PoseMatrix, moved_covariance},
+    prediction::PoseMatrix,
     tuning::{
         null_space::{HANGS_ON, TAKES_PART, TURNS_WITH},
         statement::{ROUNDING_OF_CORRELATION, SHIFT_BY_LIGHT},
@@ -99,22 +99,18 @@ impl Track {
         shortest.max(memory.step.min(memory.span)).max(f64::MIN_POSITIVE)
     }
 
-    /// Whether the object is known to be at rest: its squared motion in its covariance says nothing else, and it is known well enough, that over a step
-    /// moving the outline by less than the noise of its points.
+    /// Whether the object is known to be at rest: its squared motion in its covariance is that of none, and a deviation of it moves the outline over a
+    /// step by less than the noise of its points.
     pub(crate) fn is_known_to_rest(&self) -> bool {
-        let (model, k) = (self.belief.model, self.belief.parameter_count());
-        let Some(summary) = self.summary() else { return false };
+        let k = self.belief.parameter_count();
+        let Some(summary) = self.summary_in_body_frame() else { return false };
         let covariance = DMatrix::from_fn(k, k, |i, j| summary.covariance[(k + i, k + j)]);
         let over_step = PoseMatrix::from_fn(|i, j| if i < k && j < k { covariance[(i, j)] } else { 0.0 })
             * self.belief.memory.step.powi(2);
         let motion = DVector::from_fn(k, |i, _| summary.motion[i]);
         let squared = covariance.cholesky().map(|factor| motion.dot(&factor.solve(&motion)));
-        let to_body = summary.pose.try_inverse();
-        let displacement = to_body
-            .and_then(|to_body| moved_covariance(model, &over_step, &to_body))
-            .and_then(|in_body| self.map.farthest_displacement(model, &in_body));
         squared.is_some_and(|squared| squared <= SUDDEN * k as f64)
-            && displacement.is_some_and(|displacement| displacement < self.noise.sigma)
+            && self.farthest_displacement(&over_step).is_some_and(|displacement| displacement < self.noise.sigma)
     }
 
     /// What is believed, and would be if the outline were known, with null directions taken to be none, and known.

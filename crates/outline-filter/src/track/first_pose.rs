@@ -7,17 +7,16 @@ use super::{
     body_frame::{BodyFrame, of_pose},
 };
 use crate::{
-    map::NullDirection,
-    prediction::{PoseMatrix, moved_covariance},
+    prediction::PoseMatrix,
     tuning::null_space::{ANY_TURN, TAKES_PART},
 };
 
-/// Body to image; nothing is not known of it beside the map, which was cut in it.
+/// Body to image. The map was cut in it: what is not known of it is where the body frame lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct FirstPose {
     pub(super) pose: Matrix3<f64>,
-    /// Where the body frame of a map that is cut anew in this pose lies.
+    /// That of a map that is cut anew in this pose.
     body_frame: BodyFrame,
 }
 
@@ -31,7 +30,7 @@ impl Track {
     /// Takes the pose that it is in as that which it was begun in. What is not known of it is where a map that is cut in it lies.
     pub(crate) fn begin_here(&mut self) {
         let Some(summary) = self.summary() else { return };
-        let body_frame = self.body_frame_in(&summary.pose, &of_pose(&summary.covariance));
+        let body_frame = self.body_frame_by(&of_pose(&summary.covariance));
         self.first_pose = FirstPose { pose: summary.pose, body_frame };
     }
 
@@ -44,7 +43,6 @@ impl Track {
     /// Takes the pose that it is in, that of another track which shows no turn, as that which it was begun in. What is not known of it, any turn
     /// included, is where its body frame lies.
     pub(super) fn begin_with_any_turn_of(&mut self, other: &Self) {
-        let pose = self.belief.pose;
         // It may have been asked anew whether it shows its turn.
         let mut other = other.clone();
         other.hide_turn();
@@ -54,21 +52,20 @@ impl Track {
             of_pose(&known.covariance)
         });
         let mut covariance = known.unwrap_or_default();
-        for NullDirection { direction, .. } in &*null {
-            let model = self.model();
-            let turn = turn_rate(&model.generator(&direction[..model.parameter_count()])).abs();
+        let model = self.model();
+        for null in &*null {
+            let turn = turn_rate(&model.generator(&null.direction[..model.parameter_count()])).abs();
             // The turn itself is what nobody knows, however far it takes the origin.
             let times = if turn > TAKES_PART { (ANY_TURN / turn).max(1.0) } else { 1.0 };
-            covariance += PoseMatrix::from_fn(|i, j| times * times * direction[i] * direction[j]);
+            covariance += null.square() * (times * times);
         }
-        self.body_frame = self.body_frame_in(&pose, &covariance);
-        self.first_pose = FirstPose { pose, body_frame: self.body_frame };
+        self.body_frame = self.body_frame_by(&covariance);
+        self.first_pose = FirstPose { pose: self.belief.pose, body_frame: self.body_frame };
     }
 
-    /// Where the body frame lies by what is not known of a pose, of errors on the left.
-    fn body_frame_in(&self, pose: &Matrix3<f64>, covariance: &PoseMatrix) -> BodyFrame {
-        let in_body = pose.try_inverse().and_then(|to_body| moved_covariance(self.model(), covariance, &to_body));
-        in_body.map_or_else(BodyFrame::default, |in_body| BodyFrame::of(&in_body))
+    /// Where the body frame lies by what is not known of the pose that it is in, of errors on the left.
+    fn body_frame_by(&self, covariance: &PoseMatrix) -> BodyFrame {
+        self.in_body_frame(covariance).map_or_else(BodyFrame::default, |in_body| BodyFrame::of(&in_body))
     }
 }
 

@@ -9,7 +9,6 @@ use crate::{
     belief::StateVector,
     map::{Contour, NullDirections, TurnEvent},
     measurement::{Frame, NO_CELL, Pass},
-    prediction::moved_covariance,
     tuning::update::DEVIATIONS_PER_CELL,
     update::accumulate,
 };
@@ -42,13 +41,10 @@ impl Track {
 
     /// Whether it is known where the outline lies in a frame that has been taken, so that what that shows for the first time has a place on it.
     pub(super) fn knows_place_of_new(&self) -> bool {
-        let displacement = || {
-            let [_, given_outline] = self.held_summaries(&self.null_directions())?;
-            let (model, to_body) = (self.model(), self.belief.pose.try_inverse()?);
-            let in_body = moved_covariance(model, &of_pose(&given_outline.covariance), &to_body)?;
-            self.map.farthest_displacement(model, &in_body)
-        };
-        displacement().is_some_and(|displacement| DEVIATIONS_PER_CELL * displacement < self.map.spacing())
+        let summaries = self.held_summaries(&self.null_directions());
+        let displacement =
+            summaries.and_then(|[_, given_outline]| self.farthest_displacement(&of_pose(&given_outline.covariance)));
+        displacement.is_some_and(|displacement| DEVIATIONS_PER_CELL * displacement < self.map.spacing())
     }
 
     /// Adds cells for the parts of contours in the body frame that the map does not have yet, and measures them by the loaded points, which

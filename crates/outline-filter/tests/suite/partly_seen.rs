@@ -7,7 +7,7 @@ use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
-use crate::filter_support::filter;
+use crate::filter_support::{bent_outline, filter};
 
 const FRAMES: u32 = 30;
 const FRAME_RATE: f64 = 30.0;
@@ -179,4 +179,42 @@ fn a_part_that_comes_into_view_apart_from_a_corner_does_not_turn_it_by_a_quarter
     }
     // Where the first two frames were taken for a turn by a quarter it may stay unknown.
     assert!(told >= 15, "{told}");
+}
+
+/// A closed outline, or most of it as an open arc, after a turn.
+fn bent(turn: f64, is_part: bool, random: &mut ChaCha8Rng) -> Outline {
+    let outline = bent_outline(turn, 0.003, random, |_, _| 0.0);
+    if !is_part {
+        return outline;
+    }
+    let points = outline.pieces().next().expect("a contour").points[..240].to_vec();
+    Outline::Open(OpenOutline::new(vec![OpenArc::new(points).expect("an arc")]).expect("an outline"))
+}
+
+#[test]
+fn parts_that_two_frames_show_are_related_by_a_third() {
+    let square = |side: f64| {
+        let corner = |(x, y): (f64, f64)| Point2::new(side * x, side * y);
+        Outline::closed([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(corner).into()).expect("a square")
+    };
+    for is_part in [true, false] {
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let mut begun = filter(MotionModel::Rigid);
+        let step = |run: &mut MotionFilter, frame: u8, outline: &Outline| {
+            run.step(f64::from(frame) / FRAME_RATE, outline).expect("increasing times").is_accepted()
+        };
+        for frame in 0..2 {
+            assert!(step(&mut begun, frame, &bent(0.02 * f64::from(frame), is_part, &mut random)));
+        }
+        assert_eq!((begun.phase(), begun.estimate().is_none()), (Phase::Tracking, is_part));
+        let mut confirmed = begun.clone();
+        assert!(step(&mut confirmed, 2, &bent(0.04, is_part, &mut random)));
+        assert!(confirmed.estimate().is_some() && confirmed.restarts() == 0);
+        // Two frames of something else, and then it is not where it was going.
+        for frame in 2..4 {
+            assert!(!step(&mut begun, frame, &square(f64::from(frame))));
+        }
+        let is_taken = step(&mut begun, 4, &bent(1.2, is_part, &mut random));
+        assert_eq!((is_taken, begun.restarts()), (!is_part, usize::from(is_part)));
+    }
 }

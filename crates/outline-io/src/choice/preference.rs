@@ -29,9 +29,7 @@ pub(super) fn preferring_what_moves(
     let is_in_doubt = rests.is_some() || best.is_none_or(|best| best.score < TracingChoice::CONVINCING);
     if !is_in_doubt {
         let best = best?;
-        let (columns, rows) = sample.size();
-        let size = (best.area_share * f64::from(columns) * f64::from(rows)).sqrt();
-        let (is_good, hardly_moves) = (best.score >= GOOD, best.movement < HARDLY_MOVES * size);
+        let (is_good, hardly_moves) = (best.score >= GOOD, best.movement < HARDLY_MOVES * size_of(best, sample.size()));
         if is_good && !hardly_moves {
             return None;
         }
@@ -63,12 +61,16 @@ pub(super) fn preferring_what_moves(
 
 /// The first way whose object leaves its place, where it is told beyond doubt, and hardly less well than what rests, the best. It has seen it whole,
 /// though differences from the median of the pictures have not.
-fn leaves_its_place(candidates: &[TracingEvidence], (columns, rows): (u32, u32)) -> Option<usize> {
+fn leaves_its_place(candidates: &[TracingEvidence], of_pictures: (u32, u32)) -> Option<usize> {
     let least = TracingChoice::CONVINCING.max(HARDLY_LESS * candidates.first()?.score);
-    candidates.iter().position(|way| {
-        let size = (way.area_share * f64::from(columns) * f64::from(rows)).sqrt();
-        !way.rests && way.score >= least && way.movement > LEAVES * size
-    })
+    candidates
+        .iter()
+        .position(|way| !way.rests && way.score >= least && way.movement > LEAVES * size_of(way, of_pictures))
+}
+
+/// Side of a square of the area of what a way shows in pictures of so many columns and rows, pixels.
+fn size_of(way: &TracingEvidence, (columns, rows): (u32, u32)) -> f64 {
+    (way.area_share * f64::from(columns) * f64::from(rows)).sqrt()
 }
 
 /// What moves beside what `rests`, or beside `others`, where the pictures can show it.
