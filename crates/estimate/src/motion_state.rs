@@ -14,8 +14,10 @@ pub struct MotionState {
     pub(crate) radius: f64,
     pub(crate) pose: Matrix3<f64>,
     pub(crate) motion: ParameterVector,
-    /// Of the pose error xi, `g = exp(xi) g_hat`, then the motion.
+    /// Of the pose error xi, `g = exp(xi) g_hat`, then the motion; counted from the body frame.
     pub(crate) covariance: DMatrix<f64>,
+    /// Of where that lies beside the outline, as a pose error.
+    pub(crate) body_frame: DMatrix<f64>,
     /// This covariance if the outline is known exactly.
     pub(crate) within: DMatrix<f64>,
     pub(crate) observable: [bool; MAX_PARAMETERS],
@@ -59,8 +61,11 @@ pub struct NormalisedState {
     pub pose: Matrix3<f64>,
     /// Motion parameters, zeros behind the first k.
     pub motion: ParameterVector,
-    /// Covariance of the pose error xi, `g = exp(xi) g_hat`, then the motion: 2 k by 2 k.
+    /// Covariance of the pose error xi, `g = exp(xi) g_hat`, then the motion, counted from the body frame: 2 k by 2 k.
     pub covariance: DMatrix<f64>,
+    /// Covariance of where the body frame lies beside the first outline, as a pose error: k by k. Every pose has this error as well, in common; no motion has
+    /// it, nor does the velocity of the middle, which is where the outline is.
+    pub body_frame: DMatrix<f64>,
     /// This covariance if the outline is known exactly.
     pub covariance_given_outline: DMatrix<f64>,
     /// Which parameters of the motion are observable.
@@ -77,10 +82,20 @@ pub struct NormalisedState {
 impl From<NormalisedState> for MotionState {
     fn from(state: NormalisedState) -> Self {
         let NormalisedState {
-            model, time, origin, radius, pose, motion, covariance, observable, hidden, centroid, ..
+            model,
+            time,
+            origin,
+            radius,
+            pose,
+            motion,
+            covariance,
+            body_frame,
+            observable,
+            hidden,
+            centroid,
+            covariance_given_outline: within,
         } = state;
-        let within = state.covariance_given_outline;
-        Self { model, time, origin, radius, pose, motion, covariance, within, observable, hidden, centroid }
+        Self { model, time, origin, radius, pose, motion, covariance, body_frame, within, observable, hidden, centroid }
     }
 }
 
@@ -128,7 +143,7 @@ impl MotionState {
         let from_image = to_image.try_inverse().unwrap_or_else(Matrix3::identity);
         let change = self.model.adjoint(&to_image, &from_image);
         let change = DMatrix::from_fn(2 * k, 2 * k, |i, j| if (i < k) == (j < k) { change[i % k][j % k] } else { 0.0 });
-        &change * &self.covariance * change.transpose()
+        &change * self.with_body_frame() * change.transpose()
     }
 
     /// The pose as numbers. First its linear part, rigid: `angle`; similarity: `scale`, `angle`; affine and projective: `m11`, `m12`,
@@ -149,10 +164,10 @@ impl MotionState {
                 d - g * d[(2, 2)]
             })
             .collect();
-        let covariance = self.covariance.view((0, 0), (k, k));
+        let covariance = self.covariance.view((0, 0), (k, k)) + &self.body_frame;
         let parameter = |name, value: f64, by_entry: &dyn Fn(&Matrix3<f64>) -> f64| {
             let slope = DVector::from_iterator(k, rates.iter().map(by_entry));
-            let variance = (slope.transpose() * covariance * &slope)[(0, 0)];
+            let variance = (slope.transpose() * &covariance * &slope)[(0, 0)];
             PoseParameter { name, value, standard_deviation: variance.max(0.0).sqrt() }
         };
         let entry = |name, i, j, unit: f64| parameter(name, g[(i, j)] * unit, &|d| d[(i, j)] * unit);
@@ -224,7 +239,19 @@ impl MotionState {
         let Transition { flow, matrix, noise, .. } = self.transition(time - self.time, noise);
         let later = |p: &DMatrix<f64>| &matrix * p * matrix.transpose() + &noise;
         let (covariance, within) = (later(&self.covariance), later(&self.within));
-        Self { time, pose: flow * self.pose, covariance, within, ..self.clone() }
+        let k = self.model.parameter_count();
+        let moved = matrix.view((0, 0), (k, k));
+        let body_frame = moved * &self.body_frame * moved.transpose();
+        Self { time, pose: flow * self.pose, covariance, body_frame, within, ..self.clone() }
+    }
+
+    /// The covariance of pose and motion with that of the body frame.
+    pub(crate) fn with_body_frame(&self) -> DMatrix<f64> {
+        let mut covariance = self.covariance.clone();
+        let k = self.model.parameter_count();
+        let mut of_pose = covariance.view_mut((0, 0), (k, k));
+        of_pose += &self.body_frame;
+        covariance
     }
 
     pub(crate) fn transition(&self, seconds: f64, noise: &ProcessNoise) -> Transition {

@@ -1,5 +1,5 @@
 use freeform_riccati::{CameraScale, map_point};
-use nalgebra::{Matrix2, Matrix2xX, Matrix3, Point2, Vector2, Vector3};
+use nalgebra::{DMatrix, Matrix2, Matrix2xX, Matrix3, Point2, Vector2, Vector3};
 
 use crate::motion_state::MotionState;
 
@@ -41,18 +41,24 @@ impl PointVelocity {
 }
 
 impl MotionState {
-    /// Velocity of the middle of the object, the centroid of its outline, in image lengths per second: [`velocity_of`](Self::velocity_of) it.
+    /// Velocity of the middle of the object, the centroid of its outline, in image lengths per second. It is where the outline is, so that its covariance
+    /// leaves out what is not known of how the outline lies in the body.
     #[must_use]
     pub fn velocity_of_middle(&self) -> PointVelocity {
-        self.velocity_of(&(self.origin + self.radius * self.centroid.coords))
+        self.velocity_by(&self.centroid, &self.covariance)
     }
 
     /// Velocity of the point of the object that was at `first` in the first frame, in image coordinates. Its covariance includes the
     /// errors of motion and pose. Unobservable parameters enter with their present values.
     #[must_use]
     pub fn velocity_of(&self, first: &Point2<f64>) -> PointVelocity {
+        self.velocity_by(&Point2::from((first - self.origin) / self.radius), &self.with_body_frame())
+    }
+
+    /// Velocity of a point of the body frame, normalised, by a covariance of pose and motion.
+    fn velocity_by(&self, first: &Point2<f64>, covariance: &DMatrix<f64>) -> PointVelocity {
         let k = self.model.parameter_count();
-        let point = map_point(&self.pose, &Point2::from((first - self.origin) / self.radius));
+        let point = map_point(&self.pose, first);
         let generator = self.model.generator(&self.motion[..k]);
         let velocity = velocity_at(&generator, &point);
         let basis = self.model.basis();
@@ -68,7 +74,7 @@ impl MotionState {
             .chain(basis.iter().map(|e| velocity_at(e, &point)))
             .collect();
         let derivatives = Matrix2xX::from_columns(&derivatives);
-        let covariance = &derivatives * &self.covariance * derivatives.transpose();
+        let covariance = &derivatives * covariance * derivatives.transpose();
         PointVelocity {
             point: self.origin + self.radius * point.coords,
             velocity: self.radius * velocity,

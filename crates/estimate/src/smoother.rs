@@ -50,6 +50,7 @@ pub enum SmootherError {
 ///     pose: MotionModel::Rigid.flow(&[omega * time, 0.0, 0.0], 1.0).into_inner(),
 ///     motion: [omega, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
 ///     covariance: variance * DMatrix::identity(6, 6),
+///     body_frame: DMatrix::zeros(3, 3),
 ///     covariance_given_outline: variance * DMatrix::identity(6, 6),
 ///     observable: [true; 8],
 ///     hidden: [false; 8],

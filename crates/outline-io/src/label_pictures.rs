@@ -79,7 +79,7 @@ impl LabelPicture {
 
     /// The grey values, or the numbers of colours that label masks are painted with, those of PASCAL VOC or of a palette of the picture; nothing of other
     /// pictures. Borders that are marked as void are shared out.
-    pub(crate) fn of(picture: &DynamicImage, places: impl FnOnce() -> Option<Vec<i64>>) -> Option<Self> {
+    pub(crate) fn of(picture: &DynamicImage, places: impl FnOnce() -> Option<GrayImage>) -> Option<Self> {
         let (width, height) = (picture.width() as usize, picture.height() as usize);
         let mut numbering = Numbering::Grey;
         let labels = match picture {
@@ -88,13 +88,13 @@ impl LabelPicture {
             _ => {
                 let colours = plain_colours(picture)?;
                 let (pixels, _) = colours.as_raw().as_chunks::<4>();
-                let is_of_picture = |places: &Vec<i64>| places.len() == pixels.len();
+                let is_of_picture = |places: &GrayImage| places.dimensions() == colours.dimensions();
                 if let Some(labels) = labels_of_voc(pixels) {
                     numbering = Numbering::Voc;
                     labels
                 } else if let Some(places) = places().filter(is_of_picture) {
                     numbering = Numbering::OwnPalette;
-                    places
+                    places.as_raw().iter().map(|place| i64::from(*place)).collect()
                 } else {
                     grey_labels(pixels)?
                 }

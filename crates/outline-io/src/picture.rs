@@ -98,7 +98,7 @@ pub(crate) fn read_picture_colours(path: &Path) -> Result<DynamicImage, PictureE
 }
 
 /// A picture as it is to be seen.
-fn turned(picture: GrayImage, orientation: Orientation) -> GrayImage {
+pub(crate) fn turned(picture: GrayImage, orientation: Orientation) -> GrayImage {
     let mut picture = DynamicImage::ImageLuma8(picture);
     picture.apply_orientation(orientation);
     picture.into_luma8()

@@ -7,7 +7,7 @@ use serde::{Serialize, de::DeserializeOwned};
 use crate::errors::value_error;
 
 /// Another one for every change of what is saved of a result.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// What `__reduce__` returns: a function and its argument.
 pub(crate) type Reduced<'py> = (Bound<'py, PyAny>, (Bound<'py, PyBytes>,));

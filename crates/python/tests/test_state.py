@@ -84,7 +84,7 @@ def test_bytes_that_are_no_state_are_refused(bird):
         (data[:1000], "damaged"),
         (data + b"x", "damaged"),
         (data[:5000] + b"\x00\x01\x02" + data[5003:], "damaged"),
-        (bytes([data[0] + 1]) + data[1:], "has the format version 25, this library reads version 24"),
+        (bytes([data[0] + 1]) + data[1:], "has the format version 26, this library reads version 25"),
         (ff.Tracker().to_bytes(), "not the state of a filter"),
     ]:
         with pytest.raises(ValueError, match=message):
@@ -149,7 +149,7 @@ def test_bytes_that_are_no_identifier_are_refused(bird):
         (b"", r"0 byte\(s\) are no saved state"),
         (data[:200], "damaged"),
         (data + b"x", "damaged"),
-        (bytes([data[0] + 1]) + data[1:], "has the format version 2, this library reads version 1"),
+        (bytes([data[0] + 1]) + data[1:], "has the format version 3, this library reads version 2"),
         (ff.MotionFilter().to_bytes(), "this library reads version 1"),
     ]:
         with pytest.raises(ValueError, match=message):

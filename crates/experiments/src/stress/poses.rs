@@ -116,6 +116,7 @@ mod tests {
             pose,
             motion: [0.0; MAX_PARAMETERS],
             covariance: covariance.clone(),
+            body_frame: DMatrix::zeros(3, 3),
             covariance_given_outline: covariance,
             observable: [true; MAX_PARAMETERS],
             hidden: [false; MAX_PARAMETERS],

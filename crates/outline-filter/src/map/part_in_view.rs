@@ -229,7 +229,7 @@ mod tests {
         assert!(of_first.len() > 300 && of_first.iter().all(|m| along(&m.jacobian) < 1e-12));
         assert!(of_new.iter().filter(|m| along(&m.jacobian) > 0.3).count() > 15);
         // Nobody knows how far the sides had gone before: a radius.
-        let covariance = track.summary().expect("finite").covariance;
+        let covariance = track.summary_in_body_frame().expect("finite").covariance;
         let dual = slide.dual.iter().enumerate();
         let variance: f64 = dual
             .flat_map(|(i, a)| slide.dual.iter().enumerate().map(move |(j, b)| (i, j, a * b)))

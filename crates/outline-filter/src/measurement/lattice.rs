@@ -116,21 +116,21 @@ fn origin(values: &[f64], pitch: f64) -> Option<f64> {
     Some(largest[largest.len() / 2])
 }
 
-/// Whether points at nodes follow each other along rows, columns, and diagonals, one that repeats the point before left out.
+/// Whether points at nodes follow each other along rows, columns, and diagonals, those left out that repeat the point before, as rounded coordinates may.
+/// Points that go to and fro have noise of their own, which the pixels of a mask do not.
 fn is_chain(outline: &Outline, pitch: f64) -> bool {
     let (mut steps, mut straight) = (0_usize, 0_usize);
     for piece in outline.pieces() {
-        for pair in piece.points.windows(2) {
+        let mut nodes = piece.points.to_vec();
+        nodes.dedup();
+        let before = std::iter::once(None).chain(nodes.iter().map(Some));
+        for (pair, before) in nodes.windows(2).zip(before) {
             let step = (pair[1] - pair[0]).abs();
-            // Coordinates that are rounded may repeat.
-            if step.max() == 0.0 {
-                continue;
-            }
             let near = tuning::ON_LINE * pitch;
             let along = step.min() < near || (step.x - step.y).abs() < near;
-            straight += usize::from(along && step.max() > near);
+            straight += usize::from(along && step.max() > near && before != Some(&pair[1]));
             steps += 1;
         }
     }
-    straight as f64 >= tuning::STRAIGHT_STEPS * steps as f64
+    steps > 0 && straight as f64 >= tuning::STRAIGHT_STEPS * steps as f64
 }

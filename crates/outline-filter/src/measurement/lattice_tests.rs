@@ -2,6 +2,9 @@
 use freeform_curve_fit::Outline;
 use nalgebra::{Point2, Vector2};
 use proptest::prelude::*;
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
 
 use super::lattice::{PixelLattice, PlaceOnLattice};
 
@@ -93,4 +96,20 @@ fn points_along_a_contour_that_are_rounded_to_pixels_are_a_chain_also_where_they
     assert!(points.windows(2).filter(|pair| pair[0] == pair[1]).count() > 80);
     let lattice = found(&points, 0.025, Vector2::zeros()).expect("a lattice");
     assert_eq!((lattice.place, (lattice.pixel / 0.025).round()), (PlaceOnLattice::Chain, 1.0));
+}
+
+#[test]
+fn points_with_noise_that_are_rounded_to_pixels_are_no_chain_however_dense_they_are() {
+    let mut random = ChaCha8Rng::seed_from_u64(3);
+    for count in [200_u16, 1000, 5000] {
+        let points: Vec<_> = (0..count)
+            .map(|i| {
+                let angle = std::f64::consts::TAU * f64::from(i) / f64::from(count);
+                let noise = [0, 1].map(|_| 0.35 * random.sample::<f64, _>(StandardNormal));
+                Point2::new((16.3 * angle.cos() + noise[0]).round(), (12.1 * angle.sin() + noise[1]).round())
+            })
+            .collect();
+        let lattice = found(&points, 0.025, Vector2::zeros()).expect("a lattice");
+        assert_eq!(lattice.place, PlaceOnLattice::Nodes, "{count} points");
+    }
 }

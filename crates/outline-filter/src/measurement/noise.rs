@@ -106,10 +106,10 @@ impl Rounding {
         ROUNDING * self.share * self.pixel
     }
 
-    /// Deviation of the place of such a side in one frame from that in another, of masks: an object that hardly moves shows the same pixels for a while,
-    /// and then whole sides go on by a pixel at once.
+    /// Deviation of the place of such a side in one frame from that in another: an object that hardly moves shows the same pixels for a while, and then
+    /// whole sides go on by a pixel at once, or by what is left of it.
     fn of_step(&self) -> f64 {
-        if self.share < 1.0 { 0.0 } else { SQRT_2 * self.of_side() }
+        SQRT_2 * self.of_side()
     }
 }
 
@@ -223,7 +223,7 @@ impl NoiseModel {
         };
         let most =
             typical.map_or(at_first, |typical| (tuning::LARGEST_RATIO * typical.max(known)).min(tuning::LARGEST));
-        most.max(tuning::LARGEST_RATIO * known).max(self.rounding.of_step())
+        most.max(tuning::LARGEST_RATIO * known).max(self.rounding.of_step().min(tuning::LARGEST))
     }
 
     /// Points that tell as much as one with independent errors would, at least 1.

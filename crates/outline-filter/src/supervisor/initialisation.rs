@@ -29,8 +29,11 @@ impl MotionFilter {
         }
         if self.phase != Phase::Tracking {
             // Found again somewhere: what was seen before has come there by what nobody knows.
-            self.window.begin_anew(time, outline, track);
-            track.begin_here();
+            if track.begin_here() {
+                self.window.begin_anew(time, outline, track);
+            } else {
+                self.window.end();
+            }
             return;
         }
         let is_due = self.window.keep(time, outline, track);

@@ -182,15 +182,17 @@ impl MotionFilter {
     pub(super) fn process(&mut self, time: f64, outline: &Outline) -> (Option<FrameMeasurement>, Option<Rejection>) {
         self.measure_before_next();
         self.clock.last_frame = time;
-        let (was_changing, was_lost) = (self.history.is_changing(), self.phase == Phase::Lost);
+        let was_changing = self.history.is_changing();
         let outcome = match self.phase {
+            _ if !self.shows_enough(outline) => None,
             Phase::Tracking => self.follow(time, outline).map(|outcome| self.look_elsewhere(outcome, time, outline)),
             _ => self.acquire(time, outline),
         };
         self.search_memory.budget.add_frame(self.phase == Phase::Tracking);
         let mut rejection = outcome.map_or(Some(Rejection::NotFound), |outcome| outcome.verdict.err());
-        let is_found_again = rejection.is_none() && was_lost && self.phase == Phase::Acquiring;
-        if is_found_again && self.begin_unrelated(time, outline) {
+        let is_found_elsewhere = rejection.is_none() && self.phase == Phase::Acquiring;
+        if is_found_elsewhere && self.rests_on_two_parts() {
+            self.begin_unrelated(time, outline);
             rejection = Some(Rejection::NotFound);
         } else if rejection.is_none() {
             self.counts.add_accepted();

@@ -44,19 +44,24 @@ impl MotionFilter {
     /// Whether all that is known rests on one step between two frames that show parts of the outline: such parts may fit in a wrong pose, and no third
     /// frame has confirmed it.
     pub(super) fn rests_on_two_parts(&self) -> bool {
-        let shows_part = self.window.first().is_some_and(|first| matches!(first, Outline::Open(_)));
+        let shows_part = self.track.as_ref().is_some_and(Track::was_begun_with_part);
         shows_part && self.counts.accepted_by_track <= tuning::UNCONFIRMED
     }
 
-    /// Begins again with a frame in which a lost object was found elsewhere than expected, where nothing has [confirmed](Self::rests_on_two_parts) the
-    /// step before. Whether it has.
-    pub(super) fn begin_unrelated(&mut self, time: f64, outline: &Outline) -> bool {
-        if !self.rests_on_two_parts() || self.start(time, outline).is_err() {
-            return false;
+    /// Whether a frame shows enough to confirm such a step, or to contradict it: as much as a track is begun with.
+    pub(super) fn shows_enough(&self, outline: &Outline) -> bool {
+        outline.point_count() >= FEWEST_POINTS || !self.rests_on_two_parts()
+    }
+
+    /// Begins again with a frame in which the object was found elsewhere than expected, where nothing has [confirmed](Self::rests_on_two_parts) the step
+    /// before.
+    pub(super) fn begin_unrelated(&mut self, time: f64, outline: &Outline) {
+        self.counts.add_rejected();
+        if self.start(time, outline).is_ok() {
+            self.counts.restarts += 1;
+        } else {
+            self.phase = Phase::Lost;
         }
-        self.counts.rejected_in_recording += 1;
-        self.counts.restarts += 1;
-        true
     }
 
     /// After a rejected frame: look elsewhere, or begin again.

@@ -11,7 +11,7 @@ use super::{
 use crate::{
     belief::StateMatrix,
     dynamics::{CentredDeviations, Dynamics, Purpose, Summary, WrongFamily, centred_velocity},
-    track::{Track, TurnOfPose, TurnTold},
+    track::{Track, TurnOfPose, TurnTold, of_pose, of_pose_alone},
     tuning::statement as tuning,
 };
 
@@ -52,6 +52,10 @@ impl MotionFilter {
         // What the innovations show of the correlation counts once.
         factors = factors.map(|factor| factor.max(widening));
         random = random.widened(model, &centroid, &factors, [&none, &none])?;
+        let body_frame = track.kept_error(&random.pose)?;
+        let body_frame = Summary { covariance: of_pose_alone(&body_frame), ..random };
+        // What has been kept was told by frames that depended on each other as well.
+        let body_frame = of_pose(&body_frame.widened(model, &centroid, &factors, [&none, &none])?.covariance);
         let doubts = [self.history.contradicted(model.parameter_count()), track.covariance_of_untold_turn()];
         random.covariance += doubts.into_iter().flatten().sum::<StateMatrix>();
         let (unmodelled, moments) = track.unmodelled_motions();
@@ -83,7 +87,7 @@ impl MotionFilter {
         }
         // Edges may move points by as much, and that is in the deviations already.
         let family = unmodelled.family.filter(|_| unmodelled.is_beyond_doubt && displacement > edge_uncertainty);
-        Some(Statement { random, all, family })
+        Some(Statement { random, all, body_frame, family })
     }
 
     /// By how much a motion that is known from one step alone, a mean over it, may be off by now, as a deviation of every parameter about the
@@ -208,19 +212,13 @@ impl MotionFilter {
     /// if [`estimate`](Self::estimate) is.
     #[must_use]
     pub fn state(&self) -> Option<MotionState> {
-        let mut stated = self.statement()?.all;
-        self.track.as_ref()?.add_kept_error(&mut stated);
-        self.state_with(&stated)
-    }
-
-    /// The state with these deviations.
-    fn state_with(&self, stated: &Summary) -> Option<MotionState> {
+        let Statement { all, body_frame, .. } = self.statement()?;
         let estimate = self.estimate()?;
         let mut observable = [false; MAX_PARAMETERS];
         observable.iter_mut().zip(estimate.parameters()).for_each(|(seen, p)| *seen = p.value.is_some());
         let is_ambiguous = self.turn_hypotheses.make_pose_doubtful() && self.ambiguity().is_some();
         let turn = if is_ambiguous { TurnOfPose::Ambiguous } else { TurnOfPose::AsTheOutlineShows };
-        self.track.as_ref()?.state_of(stated, self.clock.of_track, observable, turn)
+        self.track.as_ref()?.state_of((all, body_frame), self.clock.of_track, observable, turn)
     }
 
     /// Velocity of the object's centroid, that of the area within its known outline (the centre of its cells where that is not one closed
@@ -233,8 +231,7 @@ impl MotionFilter {
         if self.turn_hypotheses.are_doubtful() || !self.is_stated() || self.hides_velocity() {
             return None;
         }
-        // It is where the outline is, wherever the body frame lies.
-        self.track.as_ref()?.velocity_of_centroid(&self.state_with(&self.statement()?.all)?)
+        self.track.as_ref()?.velocity_of_centroid(&self.state()?)
     }
 
     /// Covariance of the motion parameters in the order of the model, image units; `None` before the first frame, or if it is not

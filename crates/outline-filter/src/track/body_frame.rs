@@ -2,13 +2,14 @@
 #[cfg(feature = "serde")]
 use freeform_estimate::StateFormat;
 use freeform_riccati::MAX_PARAMETERS;
+use nalgebra::Matrix3;
 
 use super::Track;
 #[cfg(feature = "serde")]
 use crate::tuning::statement::ROUNDING_OF_CORRELATION;
 use crate::{
     belief::StateMatrix,
-    dynamics::{DynamicsFilter, Summary},
+    dynamics::DynamicsFilter,
     map::NullDirection,
     prediction::{PoseMatrix, moved_covariance},
 };
@@ -72,21 +73,25 @@ impl Track {
         self.map.farthest_displacement(self.model(), &self.in_body_frame(covariance)?)
     }
 
-    /// Adds the common error that has been kept to the covariance of pose and motion.
-    pub(crate) fn add_kept_error(&self, summary: &mut Summary) {
+    /// The common error that has been kept, as one of a pose, on the left; `None` where numbers do not allow to say it.
+    pub(crate) fn kept_error(&self, pose: &Matrix3<f64>) -> Option<PoseMatrix> {
         if self.body_frame.covariance == PoseMatrix::zeros() {
-            return;
+            return Some(PoseMatrix::zeros());
         }
-        if let Some(in_image) = moved_covariance(self.model(), &self.body_frame.covariance, &summary.pose) {
-            let mut of_pose = summary.covariance.fixed_view_mut::<MAX_PARAMETERS, MAX_PARAMETERS>(0, 0);
-            of_pose += in_image;
-        }
+        moved_covariance(self.model(), &self.body_frame.covariance, pose)
     }
 }
 
 /// That of the pose out of a covariance of pose and motion. What lies beyond the parameters of the model says nothing.
-pub(super) fn of_pose(covariance: &StateMatrix) -> PoseMatrix {
+pub(crate) fn of_pose(covariance: &StateMatrix) -> PoseMatrix {
     covariance.fixed_view::<MAX_PARAMETERS, MAX_PARAMETERS>(0, 0).into_owned()
+}
+
+/// A covariance of pose and motion that has that of a pose alone.
+pub(crate) fn of_pose_alone(covariance: &PoseMatrix) -> StateMatrix {
+    let mut of_both = StateMatrix::zeros();
+    of_both.fixed_view_mut::<MAX_PARAMETERS, MAX_PARAMETERS>(0, 0).copy_from(covariance);
+    of_both
 }
 
 #[cfg(feature = "serde")]

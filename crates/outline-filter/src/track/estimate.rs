@@ -38,14 +38,7 @@ pub(crate) enum TurnOfPose {
 }
 
 impl Track {
-    /// What is believed of pose and motion, normalised; `None` where the covariance cannot be computed.
-    pub(crate) fn summary(&self) -> Option<Summary> {
-        let mut summary = self.summary_in_body_frame()?;
-        self.add_kept_error(&mut summary);
-        Some(summary)
-    }
-
-    /// As that, counted from the body frame, wherever that lies.
+    /// What is believed of pose and motion counted from the body frame, wherever that lies, normalised; `None` where the covariance cannot be computed.
     pub(crate) fn summary_in_body_frame(&self) -> Option<Summary> {
         self.summary_by(&self.belief.marginal)
     }
@@ -110,7 +103,9 @@ impl Track {
         let motion = DVector::from_fn(k, |i, _| summary.motion[i]);
         let squared = covariance.cholesky().map(|factor| motion.dot(&factor.solve(&motion)));
         squared.is_some_and(|squared| squared <= SUDDEN * k as f64)
-            && self.farthest_displacement(&over_step).is_some_and(|displacement| displacement < self.noise.sigma)
+            && self
+                .farthest_displacement(&over_step)
+                .is_some_and(|displacement| displacement * self.belief.scale() < self.noise.sigma)
     }
 
     /// What is believed, and would be if the outline were known, with null directions taken to be none, and known.
@@ -161,12 +156,12 @@ impl Track {
 
     /// Covariance of the motion parameters as this track alone has it; `None` where it cannot be computed, or is beyond any number.
     pub(crate) fn covariance(&self) -> Option<DMatrix<f64>> {
-        self.covariance_of(&self.summary()?)
+        self.covariance_of(&self.summary_in_body_frame()?)
     }
 
     /// The motion as this track alone has it: see [`estimate_of`](Self::estimate_of).
     pub(crate) fn estimate(&self) -> Option<MotionEstimate> {
-        self.estimate_of(&self.summary()?, TurnTold::ByOutline)
+        self.estimate_of(&self.summary_in_body_frame()?, TurnTold::ByOutline)
     }
 
     /// The motion in image units, with standard deviations. A parameter whose standard deviation, over the time that it is
@@ -206,11 +201,11 @@ impl Track {
         Some(hanging.into_iter().fold(estimate, MotionEstimate::with_unobservable))
     }
 
-    /// Pose and motion with their joint covariance at a time in the unit of the track, with the parameters marked that `observable` says nothing is
-    /// known of.
+    /// Pose and motion with their joint covariance at a time in the unit of the track, and that of where the body frame lies, with the parameters marked
+    /// that `observable` says nothing is known of.
     pub(crate) fn state_of(
         &self,
-        summary: &Summary,
+        (summary, body_frame): (&Summary, &PoseMatrix),
         time: f64,
         observable: [bool; MAX_PARAMETERS],
         turn: TurnOfPose,
@@ -236,6 +231,7 @@ impl Track {
             pose: summary.pose,
             motion: summary.motion.map(|value| value * per_second),
             covariance: in_seconds(covariance),
+            body_frame: DMatrix::from_fn(k, k, |i, j| body_frame[(i, j)]),
             covariance_given_outline: in_seconds(given_outline),
             observable,
             hidden: self.hidden_parameters(turn),

@@ -35,8 +35,7 @@ impl Track {
         }
         track.noise.adopt_level_of(&self.noise);
         track.record_turn(TurnEvent::Begun);
-        track.begin_with_any_turn_of(self);
-        Some(track)
+        track.begin_with_any_turn_of(self, outline).then_some(track)
     }
 
     /// Whether it is known where the outline lies in a frame that has been taken, so that what that shows for the first time has a place on it.

@@ -8,7 +8,7 @@ impl Track {
     /// Velocity of the object's centroid in a state of this track; `None` where it is not worth stating. Whether the outline shows it
     /// [`hides_velocity`](Self::hides_velocity) says.
     pub(crate) fn velocity_of_centroid(&self, state: &MotionState) -> Option<PointVelocity> {
-        let velocity = state.velocity_of(&(self.reference.origin + self.reference.radius * self.map.centroid().coords));
+        let velocity = state.velocity_of_middle();
         let span = self.belief.memory.shortest(self.belief.parameter_count());
         let unit = self.reference.time_unit;
         let worth = |deviation: &f64| self.is_worth(*deviation * unit, span, self.reference.radius);

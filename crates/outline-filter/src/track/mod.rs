@@ -31,6 +31,7 @@ mod turn_profile;
 mod unmodelled;
 mod usual_agreement;
 
+pub(crate) use body_frame::{of_pose, of_pose_alone};
 pub(crate) use estimate::{TurnOfPose, TurnTold};
 pub use known_outline::{KnownOutline, KnownPiece};
 pub(crate) use outcome::{Comparison, Doubt, Outcome};

@@ -6,8 +6,12 @@ use freeform_riccati::{MotionModel, ParameterVector};
 use nalgebra::{Affine2, Matrix3, Projective2, SVector};
 
 use super::{
-    Comparison, Outcome, body_frame::BodyFrame, first_pose::FirstPose, shape_change::EarlyShape,
-    turn_profile::TurnProfile, usual_agreement::UsualAgreement,
+    Comparison, Outcome,
+    body_frame::BodyFrame,
+    first_pose::{FirstOutline, FirstPose},
+    shape_change::EarlyShape,
+    turn_profile::TurnProfile,
+    usual_agreement::UsualAgreement,
 };
 use crate::{
     belief::Belief,
@@ -65,7 +69,9 @@ impl Track {
         reference.update_stated(frame.deviations.good());
         let contours = frame.contours(&Matrix3::identity());
         let rounding = Self::rounding_of(outline, mask_pixel, &contours, reference.radius);
-        Self::cut(model, reference, Matrix3::identity(), contours, rounding, frame)
+        let mut track = Self::cut(model, reference, Matrix3::identity(), contours, rounding, frame)?;
+        track.first_pose.outline = FirstOutline::of(outline);
+        Some(track)
     }
 
     /// Moves on by `seconds` of the estimated motion, which may have changed meanwhile by the process noise. False, and nothing changes, where that

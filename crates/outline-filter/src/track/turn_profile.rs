@@ -103,7 +103,8 @@ impl Track {
         let k = model.parameter_count();
         // In the first frames what is promised rests on normals of a map that follows the errors of these frames.
         if promise == Promise::TooLittle && self.frames >= tuning::MEMORY {
-            let known = self.summary()?.covariance;
+            // What is kept of where the body frame lies may have any turn of it, and is no error of this one.
+            let known = self.summary_in_body_frame()?.covariance;
             let is_uncertain = |i: usize| known[(i, i)] > (tuning::LARGEST * direction[i]).powi(2);
             if (0..k - 2).any(|i| direction[i] != 0.0 && is_uncertain(i)) {
                 return None;
@@ -203,15 +204,21 @@ mod tests {
     #[test]
     fn a_turn_that_frames_promise_too_little_to_tell_is_taken_as_stated_after_the_first_ones_if_little_is_stated() {
         let body = outline(400, |t| polar(lobed(t, &[(3.0, [0.058, 0.0])]), t));
-        let mut track = Track::begin(MotionModel::Rigid, &body, 0.0, &mut Frame::default()).expect("a track");
-        assert!(track.is_all_but_round());
-        track.turn_profile.promise = Promise::TooLittle;
-        for (noise, is_known_well) in [(1e-3, true), (1e3, false)] {
-            track.noise.sigma = noise;
-            for frames in 1..2 * tuning::MEMORY {
-                track.frames = frames;
-                let is_untold = frames < tuning::MEMORY || is_known_well;
-                assert_eq!(track.covariance_of_untold_turn().is_some(), is_untold, "{frames} frames, {noise}");
+        let begun = Track::begin(MotionModel::Rigid, &body, 0.0, &mut Frame::default()).expect("a track");
+        // After a frame that shows no turn its body frame may be turned by any.
+        let circle = outline(400, |t| polar(1.0, t));
+        let before = Track::begin(MotionModel::Rigid, &circle, 0.0, &mut Frame::default()).expect("a track");
+        let with_any_turn = before.begun_anew(&body, &mut Frame::default()).expect("a turn that is shown");
+        for mut track in [begun, with_any_turn] {
+            assert!(track.is_all_but_round());
+            track.turn_profile.promise = Promise::TooLittle;
+            for (noise, is_known_well) in [(1e-3, true), (1e3, false)] {
+                track.noise.sigma = noise;
+                for frames in 1..2 * tuning::MEMORY {
+                    track.frames = frames;
+                    let is_untold = frames < tuning::MEMORY || is_known_well;
+                    assert_eq!(track.covariance_of_untold_turn().is_some(), is_untold, "{frames} frames, {noise}");
+                }
             }
         }
     }

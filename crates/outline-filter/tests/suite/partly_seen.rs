@@ -181,13 +181,20 @@ fn a_part_that_comes_into_view_apart_from_a_corner_does_not_turn_it_by_a_quarter
     assert!(told >= 15, "{told}");
 }
 
-/// A closed outline, or most of it as an open arc, after a turn.
-fn bent(turn: f64, is_part: bool, random: &mut ChaCha8Rng) -> Outline {
+/// A closed outline, or most of it as an open arc, after a turn; `between` points on each of its sides besides.
+fn bent(turn: f64, is_part: bool, between: u8, random: &mut ChaCha8Rng) -> Outline {
     let outline = bent_outline(turn, 0.003, random, |_, _| 0.0);
     if !is_part {
         return outline;
     }
-    let points = outline.pieces().next().expect("a contour").points[..240].to_vec();
+    let corners = &outline.pieces().next().expect("a contour").points[..240];
+    let mut points = Vec::new();
+    for pair in corners.windows(2) {
+        for i in 0..=between {
+            let noise = if i > 0 { [0; 2].map(|_| 0.003 * random.sample::<f64, _>(StandardNormal)) } else { [0.0; 2] };
+            points.push(pair[0] + f64::from(i) / f64::from(between + 1) * (pair[1] - pair[0]) + Vector2::from(noise));
+        }
+    }
     Outline::Open(OpenOutline::new(vec![OpenArc::new(points).expect("an arc")]).expect("an outline"))
 }
 
@@ -197,24 +204,24 @@ fn parts_that_two_frames_show_are_related_by_a_third() {
         let corner = |(x, y): (f64, f64)| Point2::new(side * x, side * y);
         Outline::closed([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(corner).into()).expect("a square")
     };
-    for is_part in [true, false] {
+    for (is_part, between) in [(true, 0), (true, 8), (false, 0)] {
         let mut random = ChaCha8Rng::seed_from_u64(5);
         let mut begun = filter(MotionModel::Rigid);
         let step = |run: &mut MotionFilter, frame: u8, outline: &Outline| {
             run.step(f64::from(frame) / FRAME_RATE, outline).expect("increasing times").is_accepted()
         };
         for frame in 0..2 {
-            assert!(step(&mut begun, frame, &bent(0.02 * f64::from(frame), is_part, &mut random)));
+            assert!(step(&mut begun, frame, &bent(0.02 * f64::from(frame), is_part, between, &mut random)));
         }
         assert_eq!((begun.phase(), begun.estimate().is_none()), (Phase::Tracking, is_part));
         let mut confirmed = begun.clone();
-        assert!(step(&mut confirmed, 2, &bent(0.04, is_part, &mut random)));
+        assert!(step(&mut confirmed, 2, &bent(0.04, is_part, between, &mut random)));
         assert!(confirmed.estimate().is_some() && confirmed.restarts() == 0);
         // Two frames of something else, and then it is not where it was going.
         for frame in 2..4 {
             assert!(!step(&mut begun, frame, &square(f64::from(frame))));
         }
-        let is_taken = step(&mut begun, 4, &bent(1.2, is_part, &mut random));
+        let is_taken = step(&mut begun, 4, &bent(1.2, is_part, between, &mut random));
         assert_eq!((is_taken, begun.restarts()), (!is_part, usize::from(is_part)));
     }
 }

@@ -251,8 +251,9 @@ fn choose_within(
     sort(&mut fine);
     coarse.retain(|candidate| !looked_at.iter().any(|tracing| tracing.is_like(&candidate.tracing)));
     settle_ties(sample, base, &mut fine);
+    let closely = fine.len();
     fine.extend(coarse);
-    let beside = preferring_what_moves(sample, base, *first, &mut fine, resting.zip(early));
+    let beside = preferring_what_moves(sample, base, *first, (&mut fine, closely), resting.zip(early));
     (fine, beside)
 }
 

@@ -12,16 +12,17 @@ const HARDLY_MOVES: f64 = 0.1;
 /// What moves by so many of its sizes is nowhere where it was.
 const LEAVES: f64 = 1.0;
 
-/// Share of the score of what rests that something else has that is told hardly less well.
+/// Share of the score of what rests that something else has that is told hardly less well: about as much is left of one seen in two pictures of five.
 const HARDLY_LESS: f64 = 0.5;
 
 /// Puts what moves in front of the best way where that shows what rests, or is in doubt. Where the best does neither, but is not seen well or hardly
-/// moves, it says what else moves. `known` is what has been found to move in place of a way.
+/// moves, it says what else moves. The first of the candidates, so many, have been looked at closely. `known` is what has been found to move in place of a
+/// way.
 pub(super) fn preferring_what_moves(
     sample: &PictureSample,
     base: &PictureSettings,
     channel: Channel,
-    candidates: &mut Vec<TracingEvidence>,
+    (candidates, closely): (&mut Vec<TracingEvidence>, usize),
     known: Option<(Tracing, Motion)>,
 ) -> Option<TracingWarning> {
     let best = candidates.first();
@@ -51,7 +52,7 @@ pub(super) fn preferring_what_moves(
         candidates.insert(0, moving);
         return None;
     }
-    if let Some(place) = rests.and_then(|_| leaves_its_place(candidates, sample.size())) {
+    if let Some(place) = rests.and_then(|_| leaves_its_place(&candidates[..closely], sample.size())) {
         candidates[..=place].rotate_right(1);
         return None;
     }
