@@ -204,7 +204,7 @@ fn parts_that_two_frames_show_are_related_by_a_third() {
         let corner = |(x, y): (f64, f64)| Point2::new(side * x, side * y);
         Outline::closed([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(corner).into()).expect("a square")
     };
-    for (is_part, between) in [(true, 0), (true, 8), (false, 0)] {
+    for (is_part, between) in [(true, 0), (true, 20), (false, 0)] {
         let mut random = ChaCha8Rng::seed_from_u64(5);
         let mut begun = filter(MotionModel::Rigid);
         let step = |run: &mut MotionFilter, frame: u8, outline: &Outline| {
