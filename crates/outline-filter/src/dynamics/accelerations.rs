@@ -25,7 +25,7 @@ impl Accelerations {
             Course::ChangingGenerator { .. } | Course::SteadyChange { turns: true } => Self::OfGenerator,
             Course::Accelerating { rates: true, .. } | Course::SteadyChange { turns: false } => Self::All,
             Course::Accelerating { rates: false, .. } => Self::OfVelocity,
-            Course::ConstantGenerator | Course::Shaken { .. } | Course::ConstantVelocity => Self::None,
+            Course::ConstantGenerator | Course::Shaken { .. } | Course::ConstantVelocity { .. } => Self::None,
         }
     }
 
@@ -45,7 +45,7 @@ impl Accelerations {
         // Along an arc the velocity of the centroid turns all the time.
         let (a, v) = parts(&centred_generator(model, &source.mean.as_slice()[k..2 * k]));
         let mut acceleration = mean.fixed_rows_mut::<2>(3 * k - 2);
-        if source.course == Course::ConstantVelocity {
+        if source.course.is_constant_velocity() {
             acceleration.copy_from(&(a * source.mean.fixed_rows::<2>(3 * k - 2)));
         } else if source.course.turns() {
             acceleration += a * v;

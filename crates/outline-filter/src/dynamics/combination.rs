@@ -105,7 +105,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         for (hypothesis, weight) in self.hypotheses.iter().zip(&self.weights) {
             let turns = match hypothesis.course {
                 Course::ConstantGenerator => true,
-                Course::ConstantVelocity => false,
+                Course::ConstantVelocity { .. } => false,
                 Course::Shaken { .. }
                 | Course::Accelerating { .. }
                 | Course::ChangingGenerator { .. }

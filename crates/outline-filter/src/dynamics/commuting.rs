@@ -40,7 +40,9 @@ impl<const N: usize> Hypothesis<N> {
             let turning = Vector2::new(self.mean[3 * k - 2], self.mean[3 * k - 1]);
             let pushed = self.pushed_along(step);
             let (shift, later) = match self.course {
-                Course::ConstantVelocity => (v * dt + turned_along(&along, dt) * turning, v + turn * turning - turning),
+                Course::ConstantVelocity { .. } => {
+                    (v * dt + turned_along(&along, dt) * turning, v + turn * turning - turning)
+                }
                 _ if changes => (along * v + pushed * turning, turn * v + along * turning),
                 _ => (along * v, turn * v),
             };
@@ -70,7 +72,7 @@ impl<const N: usize> Hypothesis<N> {
             self.mean[k - 2 + i] += shift[i];
             self.mean[2 * k - 2 + i] = later[i];
         }
-        if self.course == Course::ConstantVelocity {
+        if self.course.is_constant_velocity() {
             let turning = Vector2::new(self.mean[3 * k - 2], self.mean[3 * k - 1]);
             self.mean.fixed_rows_mut::<2>(3 * k - 2).copy_from(&(turn * turning));
         }
@@ -104,11 +106,11 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::dynamics::{CentredPose, centred::CentredVector};
+    use crate::dynamics::{CentredPose, centred::CentredVector, course::PointOfBody};
 
     const COURSES: [Course; 8] = [
         Course::ConstantGenerator,
-        Course::ConstantVelocity,
+        Course::ConstantVelocity { of: PointOfBody::NearCentroid },
         Course::Shaken { deviations: 4.0 },
         Course::Accelerating { level: 1e-1, rates: true },
         Course::Accelerating { level: 1e1, rates: false },

@@ -2,6 +2,26 @@
 use super::{centred::CentredVector, setting::Dynamics};
 use crate::tuning::{dynamics as tuning, steady_change};
 
+/// A point of the body whose velocity stays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) enum PointOfBody {
+    /// The centroid, but for what noise and hidden parts make of it.
+    NearCentroid,
+    /// Any, such as an axle.
+    Any,
+}
+
+impl PointOfBody {
+    /// How far it may be from the centroid, in RMS radii, as a deviation.
+    pub(super) fn off_centroid(self) -> f64 {
+        match self {
+            Self::NearCentroid => tuning::OFF_CENTROID,
+            Self::Any => tuning::ANY_POINT,
+        }
+    }
+}
+
 /// What the motion does between frames.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -13,9 +33,9 @@ pub(super) enum Course {
         /// In standard deviations of a pose as the points of a frame tell it.
         deviations: f64,
     },
-    /// The velocity of a point of the object stays that is not quite the centroid. In place of accelerations its state has the part of the
-    /// velocity of the centroid that turns with the object.
-    ConstantVelocity,
+    /// The velocity of a point of the object stays. In place of accelerations its state has the part of the velocity of the centroid that turns with the
+    /// object.
+    ConstantVelocity { of: PointOfBody },
     /// The accelerations change at random.
     Accelerating {
         /// Level of their density, in variances of a pose per fifth power of a step.
@@ -46,11 +66,12 @@ impl Course {
         match setting {
             Dynamics::Auto => {
                 let shaken = tuning::SHAKEN.map(|deviations| Self::Shaken { deviations });
-                let constant = [Self::ConstantGenerator, Self::ConstantVelocity];
-                constant.into_iter().chain(shaken).chain(accelerating).collect()
+                let of_velocity = [PointOfBody::NearCentroid, PointOfBody::Any].map(|of| Self::ConstantVelocity { of });
+                let constant = std::iter::once(Self::ConstantGenerator).chain(of_velocity);
+                constant.chain(shaken).chain(accelerating).collect()
             }
             Dynamics::Generator => vec![Self::ConstantGenerator],
-            Dynamics::Velocity => vec![Self::ConstantVelocity],
+            Dynamics::Velocity => vec![Self::ConstantVelocity { of: PointOfBody::NearCentroid }],
             Dynamics::Accelerating => accelerating.collect(),
         }
     }
@@ -64,7 +85,9 @@ impl Course {
                 (first, seconds * self.memory(), tuning::FIRST_ACCELERATION)
             }
             Self::SteadyChange { .. } => (0, seconds, steady_change::ANY),
-            Self::ConstantGenerator | Self::Shaken { .. } | Self::ConstantVelocity => return CentredVector::zeros(),
+            Self::ConstantGenerator | Self::Shaken { .. } | Self::ConstantVelocity { .. } => {
+                return CentredVector::zeros();
+            }
         };
         let unit = (size / (span * span)).powi(2);
         CentredVector::from_fn(|j, _| if (first..k).contains(&j) { pose_variance[j] * unit } else { 0.0 })
@@ -75,7 +98,8 @@ impl Course {
         match self {
             Self::ConstantGenerator => tuning::PRIOR_OF_GENERATOR,
             Self::Shaken { .. } => tuning::PRIOR_OF_SHAKEN,
-            Self::ConstantVelocity => tuning::PRIOR_OF_VELOCITY,
+            Self::ConstantVelocity { of: PointOfBody::NearCentroid } => tuning::PRIOR_OF_VELOCITY,
+            Self::ConstantVelocity { of: PointOfBody::Any } => tuning::PRIOR_OF_VELOCITY_OF_ANY,
             Self::Accelerating { .. } | Self::ChangingGenerator { .. } => tuning::PRIOR_OF_EACH_LEVEL,
             Self::SteadyChange { .. } => 0.0,
         }
@@ -96,7 +120,12 @@ impl Course {
 
     /// Whether the state has entries behind the motion.
     pub(super) fn has_more_than_motion(self) -> bool {
-        self.has_accelerations() || self == Self::ConstantVelocity
+        self.has_accelerations() || self.is_constant_velocity()
+    }
+
+    /// Whether the velocity of a point stays.
+    pub(super) fn is_constant_velocity(self) -> bool {
+        matches!(self, Self::ConstantVelocity { .. })
     }
 
     /// Whether these are accelerations, or rates of change in place of them.
@@ -108,7 +137,7 @@ impl Course {
     pub(super) fn turns(self) -> bool {
         match self {
             Self::ConstantGenerator | Self::Shaken { .. } | Self::ChangingGenerator { .. } => true,
-            Self::ConstantVelocity | Self::Accelerating { .. } => false,
+            Self::ConstantVelocity { .. } | Self::Accelerating { .. } => false,
             Self::SteadyChange { turns } => turns,
         }
     }
@@ -117,7 +146,10 @@ impl Course {
     pub(super) fn level(self) -> Option<f64> {
         match self {
             Self::Accelerating { level, .. } | Self::ChangingGenerator { level } => Some(level),
-            Self::ConstantGenerator | Self::Shaken { .. } | Self::ConstantVelocity | Self::SteadyChange { .. } => None,
+            Self::ConstantGenerator
+            | Self::Shaken { .. }
+            | Self::ConstantVelocity { .. }
+            | Self::SteadyChange { .. } => None,
         }
     }
 

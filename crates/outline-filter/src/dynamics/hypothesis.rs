@@ -2,7 +2,7 @@
 use freeform_riccati::{MotionModel, map_point};
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 
-use crate::{tuning::dynamics as tuning, vectors::vectorised};
+use crate::vectors::vectorised;
 
 use super::{
     centred::{CentredMatrix, CentredPose, CentredVector, LARGEST, as_map, carry, centred_generator, parts},
@@ -74,7 +74,7 @@ impl<const N: usize> Hypothesis<N> {
 
     /// Number of entries that mean the same in others: what a course has alone is not among them.
     pub(super) fn shared(&self) -> usize {
-        if self.course == Course::ConstantVelocity { 2 * Self::K } else { self.size() }
+        if self.course.is_constant_velocity() { 2 * Self::K } else { self.size() }
     }
 
     /// Rates of the motion, as a linear map.
@@ -101,8 +101,8 @@ impl<const N: usize> Hypothesis<N> {
         share: f64,
     ) {
         let k = Self::K;
-        if self.course == Course::ConstantVelocity {
-            let rates = self.rates(model) * tuning::OFF_CENTROID;
+        if let Course::ConstantVelocity { of } = self.course {
+            let rates = self.rates(model) * of.off_centroid();
             let added = share * rates * rates.transpose();
             let mut block = self.covariance.fixed_view_mut::<2, 2>(3 * k - 2, 3 * k - 2);
             block += added;
@@ -144,7 +144,7 @@ impl<const N: usize> Hypothesis<N> {
         let entry = |at: usize| CentredVector::from_fn(|j, _| if j < k { self.mean[at * k + j] } else { 0.0 });
         let [error, motion, mut acceleration] = [entry(0), entry(1), entry(2)];
         let turning = Vector2::new(acceleration[k - 2], acceleration[k - 1]);
-        if self.course == Course::ConstantVelocity {
+        if self.course.is_constant_velocity() {
             acceleration.fill(0.0);
         }
         let v = parts(&model.generator(&motion.as_slice()[..k])).1;
@@ -162,7 +162,7 @@ impl<const N: usize> Hypothesis<N> {
                 let (turn, along) = model.linear_flow_with_integral(&half_way.as_slice()[..k], dt);
                 (turn, along, along * v + pushed * w, turn * v + along * w)
             }
-            Course::ConstantVelocity => {
+            Course::ConstantVelocity { .. } => {
                 let (turn, along) = of_motion();
                 let beyond = turned_along(&along, dt) * turning;
                 (turn, along, v * dt + beyond, v + turn * turning - turning)
@@ -191,7 +191,7 @@ impl<const N: usize> Hypothesis<N> {
         }
         (self.mean[k - 2], self.mean[k - 1]) = (centre.x, centre.y);
         (self.mean[2 * k - 2], self.mean[2 * k - 1]) = (later.x, later.y);
-        if self.course == Course::ConstantVelocity {
+        if self.course.is_constant_velocity() {
             self.mean.fixed_rows_mut::<2>(3 * k - 2).copy_from(&(turn * turning));
         }
         self.add_change_of_accelerations(step);
@@ -241,7 +241,7 @@ impl<const N: usize> Hypothesis<N> {
                     }
                 }
             }
-            Course::ConstantVelocity => {
+            Course::ConstantVelocity { .. } => {
                 let (less, beyond) = (turn - Matrix2::identity(), turned_along(along, dt));
                 for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                     let (row, column) = (rates + i, 2 * k + rates + j);
@@ -332,7 +332,7 @@ impl<const N: usize> Hypothesis<N> {
         self.mean[2 * k - 2] += carried.x;
         self.mean[2 * k - 1] += carried.y;
         let carried = match self.course {
-            Course::ConstantVelocity => carried,
+            Course::ConstantVelocity { .. } => carried,
             _ => parts(&centred_generator(model, &self.mean.as_slice()[2 * k..3 * k])).0 * apart,
         };
         self.mean[3 * k - 2] += carried.x;

@@ -26,7 +26,7 @@ use crate::{
 };
 
 /// Hypotheses at most.
-pub(super) const MOST: usize = 2
+pub(super) const MOST: usize = 3
     + tuning::SHAKEN.len()
     + (tuning::LEVELS.len() + tuning::LEVELS_OF_VELOCITY.len() + tuning::LEVELS_OF_GENERATOR.len());
 

@@ -82,7 +82,9 @@ fn widens<const N: usize>(
 /// Probability, in a step, that a course is left for a certain other one.
 fn leaving(course: Course) -> f64 {
     match course {
-        Course::ConstantGenerator | Course::ConstantVelocity | Course::SteadyChange { .. } => tuning::LEAVES_CONSTANT,
+        Course::ConstantGenerator | Course::ConstantVelocity { .. } | Course::SteadyChange { .. } => {
+            tuning::LEAVES_CONSTANT
+        }
         Course::Accelerating { .. } | Course::ChangingGenerator { .. } | Course::Shaken { .. } => {
             tuning::LEAVES_CHANGING
         }
@@ -93,7 +95,7 @@ fn leaving(course: Course) -> f64 {
 fn arriving(course: Course) -> f64 {
     match course {
         Course::Shaken { .. } => tuning::BEGINS_TO_SHAKE,
-        Course::ConstantGenerator | Course::ConstantVelocity => tuning::BECOMES_CONSTANT,
+        Course::ConstantGenerator | Course::ConstantVelocity { .. } => tuning::BECOMES_CONSTANT,
         Course::Accelerating { .. } | Course::ChangingGenerator { .. } | Course::SteadyChange { .. } => 1.0,
     }
 }
@@ -248,13 +250,13 @@ impl<const N: usize> Pooled<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::Dynamics;
+    use crate::dynamics::{Dynamics, course::PointOfBody};
 
     #[test]
     fn constant_motions_are_left_more_rarely_than_changing_ones() {
         let courses = [
             Course::ConstantGenerator,
-            Course::ConstantVelocity,
+            Course::ConstantVelocity { of: PointOfBody::NearCentroid },
             Course::Shaken { deviations: 4.0 },
             Course::Accelerating { level: 1e-1, rates: true },
             Course::Accelerating { level: 1e3, rates: false },
@@ -312,7 +314,7 @@ mod tests {
         for (apart, mixed) in apart.iter().zip(&mixed) {
             assert!((apart.mean - mixed.mean).amax() < 1e-12, "{:?}", apart.course);
             // How far off the centroid the point of a constant velocity is follows from the rates, which differ.
-            let known = if apart.course == Course::ConstantVelocity { 6 } else { 9 };
+            let known = if apart.course.is_constant_velocity() { 6 } else { 9 };
             let off = (apart.covariance - mixed.covariance).view((0, 0), (known, known)).amax();
             assert!(off < 1e-12 * mixed.covariance.amax(), "{:?}: {off}", apart.course);
         }

@@ -54,7 +54,7 @@ impl<const N: usize> Hypothesis<N> {
             Course::ChangingGenerator { .. } | Course::SteadyChange { turns: true } => {
                 moved_by_generator(&motion, &acceleration, dt)
             }
-            Course::ConstantVelocity => moved_straight(&motion, &acceleration, dt),
+            Course::ConstantVelocity { .. } => moved_straight(&motion, &acceleration, dt),
             Course::Accelerating { .. } | Course::SteadyChange { turns: false } => {
                 moved_by_accelerations(&motion, &acceleration, dt)
             }
@@ -70,7 +70,7 @@ impl<const N: usize> Hypothesis<N> {
         self.mean.fixed_rows_mut::<RATES>(0).copy_from(&off.fixed_rows::<RATES>(0));
         self.mean.fixed_rows_mut::<2>(RATES).copy_from(&centre);
         self.mean.fixed_rows_mut::<MAX_PARAMETERS>(k).copy_from(&moved.motion);
-        if self.course == Course::ConstantVelocity {
+        if self.course.is_constant_velocity() {
             let turn = moved.local.fixed_view::<2, 2>(0, 0);
             let turning = turn * acceleration.fixed_rows::<2>(RATES);
             self.mean.fixed_rows_mut::<2>(2 * k + RATES).copy_from(&turning);
@@ -93,7 +93,7 @@ impl<const N: usize> Hypothesis<N> {
         f.fixed_view_mut::<MAX_PARAMETERS, MAX_PARAMETERS>(k, k).copy_from(&moved.of_motion);
         match self.course {
             Course::ConstantGenerator | Course::Shaken { .. } => {}
-            Course::ConstantVelocity => {
+            Course::ConstantVelocity { .. } => {
                 let turn = moved.local.fixed_view::<2, 2>(0, 0).into_owned();
                 let less = turn - Matrix2::identity();
                 f.fixed_view_mut::<2, 2>(RATES, 2 * k + RATES).copy_from(&(0.5 * dt * less));
@@ -198,13 +198,13 @@ fn in_centred_coordinates(change: &PoseMatrix) -> PoseMatrix {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::CentredPose;
+    use crate::dynamics::{CentredPose, course::PointOfBody};
 
     type State = nalgebra::SVector<f64, 24>;
 
     const COURSES: [Course; 7] = [
         Course::ConstantGenerator,
-        Course::ConstantVelocity,
+        Course::ConstantVelocity { of: PointOfBody::NearCentroid },
         Course::Accelerating { level: 1e-1, rates: true },
         Course::Accelerating { level: 1e1, rates: false },
         Course::ChangingGenerator { level: 1e1 },
@@ -232,7 +232,7 @@ mod tests {
         let size = if course.has_more_than_motion() { 24 } else { 16 };
         let mut mean = State::from_fn(|i, _| if i < size { 0.3 * (1.0 + 2.3 * i as f64).sin() } else { 0.0 });
         (0..8).for_each(|i| mean[i] *= 0.1);
-        if course == Course::ConstantVelocity {
+        if course.is_constant_velocity() {
             mean.fixed_rows_mut::<6>(16).fill(0.0);
         }
         Hypothesis { course, mean, covariance: SMatrix::zeros() }
@@ -273,7 +273,7 @@ mod tests {
         for course in COURSES {
             let mut begun = begun(course);
             begun.mean.fixed_rows_mut::<8>(0).fill(0.0);
-            if course == Course::ConstantVelocity {
+            if course.is_constant_velocity() {
                 // How the rates turn what is small of the velocity is left out.
                 begun.mean.fixed_rows_mut::<2>(22).fill(0.0);
             }
@@ -283,7 +283,7 @@ mod tests {
                 assert!(hypothesis.predict(&step));
                 hypothesis.mean
             };
-            let without_acceleration = |j: usize| course == Course::ConstantVelocity && (16..22).contains(&j);
+            let without_acceleration = |j: usize| course.is_constant_velocity() && (16..22).contains(&j);
             for j in (0..size).filter(|j| !without_acceleration(*j)) {
                 let unit = State::from_fn(|i, _| f64::from(u8::from(i == j)));
                 let difference = (moved(begun.mean + 1e-5 * unit) - moved(begun.mean - 1e-5 * unit)) / 2e-5;

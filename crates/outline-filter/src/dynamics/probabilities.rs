@@ -9,7 +9,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         for (hypothesis, weight) in self.hypotheses.iter().zip(&self.weights) {
             match hypothesis.course {
                 Course::ConstantGenerator | Course::Shaken { .. } => weights.generator += weight,
-                Course::ConstantVelocity => weights.velocity += weight,
+                Course::ConstantVelocity { .. } => weights.velocity += weight,
                 Course::Accelerating { .. } | Course::ChangingGenerator { .. } | Course::SteadyChange { .. } => {
                     weights.accelerating += weight;
                 }

@@ -69,6 +69,8 @@ pub(crate) mod dynamics {
     /// do not tell a constant velocity from a constant generator, as where an object turns slowly, chance must not leave it out.
     pub(crate) const PRIOR_OF_GENERATOR: f64 = 0.886;
     pub(crate) const PRIOR_OF_VELOCITY: f64 = 0.09;
+    /// Of the velocity of any point, which most bodies that are driven have at their axle.
+    pub(crate) const PRIOR_OF_VELOCITY_OF_ANY: f64 = 0.01;
     /// Of each of [`SHAKEN`].
     pub(crate) const PRIOR_OF_SHAKEN: f64 = 0.002;
     pub(crate) const PRIOR_OF_EACH_LEVEL: f64 = 0.001;
@@ -86,8 +88,10 @@ pub(crate) mod dynamics {
     /// As these, where it turns with the object. Of a body that turns by a small angle from frame to frame the others say nearly the same.
     pub(crate) const LEVELS_OF_GENERATOR: [f64; 4] = [1e-5, 1e-2, 1e1, 1e4];
     /// How far the point of an object that runs straight may be from its centroid, in RMS radii, as a deviation: noise, hidden arcs, and bodies that are
-    /// not even, as with holes and marks. Where it is farther off than this expects, a generator that changes explains it, and nothing is constant.
+    /// not even, as with holes and marks.
     pub(crate) const OFF_CENTROID: f64 = 0.02;
+    /// As that, of any point, as of the axle of a wheel of which a part is seen. What runs straight is hardly ever far off the outline.
+    pub(crate) const ANY_POINT: f64 = 1.0;
     /// Turn in a step, in rad, as a deviation, that the path of an object may tell where its outline does not: larger ones are no arc any more.
     pub(crate) const LARGEST_STEP_OF_PATH: f64 = 0.5;
     /// Probability of what lies outside of an interval of 95 %.
