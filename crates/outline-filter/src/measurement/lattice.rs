@@ -16,6 +16,8 @@ pub(crate) enum PlaceOnLattice {
     Nodes,
     /// On its lines, interpolated between two nodes.
     Lines,
+    /// On its lines, but where a side lies along them at the nodes of one twice as fine, as that of a mask does which was smoothed and then interpolated.
+    LinesOfMask,
 }
 
 /// A lattice of square pixels.
@@ -46,7 +48,12 @@ impl PixelLattice {
             let pixel = lines.pixel_of_nodes(&points)?;
             Some(Self { pixel, place: place(lines) })
         });
-        of_nodes.or(Some(Self { pixel: found.pitch, place: PlaceOnLattice::Lines }))
+        of_nodes.or_else(|| {
+            let at_nodes = share(&points, |p| finer.numbers(p).iter().all(Option::is_some));
+            let is_mask = at_nodes > tuning::SIDES_AT_NODES;
+            let place = if is_mask { PlaceOnLattice::LinesOfMask } else { PlaceOnLattice::Lines };
+            Some(Self { pixel: found.pitch, place })
+        })
     }
 }
 
@@ -79,7 +86,12 @@ impl Lines {
 }
 
 fn nearly_all(points: &[Point2<f64>], holds: impl Fn(&Point2<f64>) -> bool) -> bool {
-    points.iter().filter(|point| holds(point)).count() as f64 >= tuning::NEARLY_ALL * points.len() as f64
+    share(points, holds) >= tuning::NEARLY_ALL
+}
+
+/// Share of points of which something holds.
+fn share(points: &[Point2<f64>], holds: impl Fn(&Point2<f64>) -> bool) -> f64 {
+    points.iter().filter(|point| holds(point)).count() as f64 / points.len().max(1) as f64
 }
 
 /// The values that occur more than once, in order.

@@ -98,6 +98,27 @@ fn points_along_a_contour_that_are_rounded_to_pixels_are_a_chain_also_where_they
     assert_eq!((lattice.place, (lattice.pixel / 0.025).round()), (PlaceOnLattice::Chain, 1.0));
 }
 
+/// A rectangle with sides along the pixels, as it is found in a smoothed mask: its corners are rounded off, and its sides lie between two pixels.
+#[test]
+fn sides_along_the_pixels_that_lie_half_way_between_two_are_those_of_a_mask() {
+    let rectangle = |off: f64| {
+        let side = |from: [f64; 2], step: [f64; 2]| {
+            (0..30_u8).map(move |i| Point2::new(from[0] + f64::from(i) * step[0], from[1] + f64::from(i) * step[1]))
+        };
+        let sides = [([1.0, off], [1.0, 0.0]), ([31.0 + off, 1.0], [0.0, 1.0]), ([30.0, 31.0 + off], [-1.0, 0.0])];
+        let mut points: Vec<_> = sides.into_iter().flat_map(|(from, step)| side(from, step)).collect();
+        points.extend(side([off, 30.0], [0.0, -1.0]));
+        for i in 0..4_usize {
+            points[30 * i] += Vector2::new([0.0, -0.13, 0.0, 0.11][i], [0.17, 0.0, -0.19, 0.0][i]);
+        }
+        points
+    };
+    let place = |off: f64| found(&rectangle(off), 0.025, Vector2::zeros()).map(|lattice| lattice.place);
+    assert_eq!(place(0.5), Some(PlaceOnLattice::LinesOfMask));
+    // That of a grey picture lies anywhere between.
+    assert_eq!(place(0.37), Some(PlaceOnLattice::Lines));
+}
+
 #[test]
 fn points_with_noise_that_are_rounded_to_pixels_are_no_chain_however_dense_they_are() {
     let mut random = ChaCha8Rng::seed_from_u64(3);

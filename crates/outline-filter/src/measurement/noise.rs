@@ -76,7 +76,7 @@ impl Rounding {
     pub(crate) fn on_lattice(pixel: f64, place: PlaceOnLattice, scatter: f64, (length, points): (f64, usize)) -> Self {
         let scatter = scatter / pixel;
         let share = match place {
-            PlaceOnLattice::Chain => 1.0,
+            PlaceOnLattice::Chain | PlaceOnLattice::LinesOfMask => 1.0,
             // Noise before the rounding makes its errors noise as well: the mean of a rounded Gaussian number (B. Widrow and I. Kollar,
             // Quantization Noise, 2008).
             PlaceOnLattice::Nodes => (-2.0 * (PI * scatter).powi(2) + 2.0 * (PI * ROUNDING).powi(2)).min(0.0).exp(),

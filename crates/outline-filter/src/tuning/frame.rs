@@ -32,6 +32,9 @@ pub(crate) mod lattice {
     pub(crate) const FEWEST_LINES: usize = 8;
     /// Pitches that are tried: interpolated coordinates may be the same by chance, and stand between the lines.
     pub(crate) const PITCHES_TRIED: usize = 4;
+    /// Share of points at the nodes of a lattice twice as fine from which on points on its lines are those of a mask: of a side that lies along the pixels of a
+    /// grey picture one point in 25 is, and of one that does not so are as few of a mask, whose contour is ragged then.
+    pub(crate) const SIDES_AT_NODES: f64 = 0.25;
     /// Distance from a line within which a point is on it, in pitches: coordinates in a file may be rounded.
     pub(crate) const ON_LINE: f64 = 0.01;
     /// Share of the points that lie on lines: of points anywhere hardly more than 4 in 100 do.
