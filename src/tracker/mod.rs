@@ -5,6 +5,7 @@
 //! [`Observation`] for each frame of each object, and an [`ObjectResult`] with [`Warning`](crate::Warning)s for each object. A
 //! [`Trajectory`] keeps the poses.
 mod attendance;
+mod continuous_angle;
 mod contour_order;
 mod edge_seeker;
 mod family;
@@ -43,6 +44,7 @@ pub use freeform_outline_filter::ExpectedOutline;
 
 pub use self::{
     attendance::{Attendance, Sighting},
+    continuous_angle::ContinuousAngle,
     edge_seeker::EdgeSeeker,
     family::MotionFamily,
     not_stated::NotStated,

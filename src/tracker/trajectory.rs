@@ -6,7 +6,9 @@ use freeform_estimate::{
 };
 use freeform_riccati::{CameraScale, MotionModel};
 
-use super::{MethodSettings, Tracker, not_stated::NotStated, observation::Observation, result::VELOCITY_NAMES};
+use super::{
+    ContinuousAngle, MethodSettings, Tracker, not_stated::NotStated, observation::Observation, result::VELOCITY_NAMES,
+};
 use crate::rejection::FrameRejection;
 
 /// The pose of every object in every frame: one row per observation, in their order. It needs the motion filter: the adaptive method gives no poses.
@@ -63,8 +65,8 @@ pub struct TrajectoryRow {
 /// Pose and motion of an object in one frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PoseAndMotion {
-    /// The pose parameters as in [`MotionState::pose_parameters`], except that angles are continuous from row to row of an object and may
-    /// exceed half a turn.
+    /// The pose parameters as in [`MotionState::pose_parameters`], except that angles are [continuous](ContinuousAngle) from row to row of a segment and
+    /// may exceed half a turn.
     pub pose: Vec<PoseParameter>,
     /// The motion.
     pub motion: MotionEstimate,
@@ -172,11 +174,12 @@ impl Trajectory {
     /// and velocities divided by it.
     #[must_use]
     pub fn poses(&self, scale: Option<CameraScale>) -> Vec<Option<PoseAndMotion>> {
-        let mut angles: HashMap<&str, f64> = HashMap::new();
+        let mut angles: HashMap<(&str, usize), ContinuousAngle> = HashMap::new();
         let rows = self.rows.iter().map(|row| {
             let state = row.state()?;
             let mut pose = state.pose_parameters();
-            pose.iter_mut().for_each(|parameter| report(parameter, scale, angles.entry(&row.object).or_default()));
+            let angles = angles.entry((&row.object, row.segment)).or_default();
+            pose.iter_mut().for_each(|parameter| report(parameter, scale, (state, angles)));
             let motion = state.motion();
             let velocity = row.velocity_not_stated.is_none().then(|| state.velocity_of_middle());
             Some(PoseAndMotion {
@@ -253,14 +256,18 @@ fn smooth_object(rows: &mut [&mut TrajectoryRow], noise: &ProcessNoise) -> Resul
     Ok(())
 }
 
-/// Changes a number of a pose to how it is reported; `last_angle` is that of the row before.
-fn report(parameter: &mut PoseParameter, scale: Option<CameraScale>, last_angle: &mut f64) {
+/// Changes a number of the pose of a state to how it is reported.
+fn report(
+    parameter: &mut PoseParameter,
+    scale: Option<CameraScale>,
+    (state, angles): (&MotionState, &mut ContinuousAngle),
+) {
     let PoseParameter { name, value, standard_deviation } = parameter;
     // As a generator changes between image and space, so does a map.
     match (*name, scale.map(CameraScale::value)) {
-        ("angle", _) if value.is_finite() => {
-            *value += std::f64::consts::TAU * ((*last_angle - *value) / std::f64::consts::TAU).round();
-            *last_angle = *value;
+        ("angle", _) => {
+            let (angle, missed) = angles.next(state, *value);
+            (*value, *standard_deviation) = (angle, standard_deviation.hypot(missed));
         }
         ("x" | "y", Some(scale)) => (*value, *standard_deviation) = (*value / scale, *standard_deviation / scale),
         ("m31" | "m32", Some(scale)) => {

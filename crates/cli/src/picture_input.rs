@@ -212,7 +212,11 @@ impl PictureInput {
     /// What is to be said after all have been read: of the labels, or of what the outlines say of the pixels.
     pub(crate) fn closing_remarks(&self) -> Vec<String> {
         let of_labels: Vec<String> = self.label_warnings().into_iter().map(|(_, warning)| warning).collect();
-        if of_labels.is_empty() { self.remark_on_pixels().into_iter().collect() } else { of_labels }
+        if of_labels.is_empty() {
+            self.warning_of_aspect().map(|(_, warning)| warning).into_iter().collect()
+        } else {
+            of_labels
+        }
     }
 
     /// What is wrong with the labels of masks read so far, with the codes.
@@ -220,12 +224,14 @@ impl PictureInput {
         self.traced.labels().map(label_warnings).unwrap_or_default()
     }
 
-    fn remark_on_pixels(&self) -> Option<String> {
+    /// That the pixels have another aspect, as far as the pictures read so far say, with the code.
+    fn warning_of_aspect(&self) -> Option<(OriginWarning, String)> {
         let aspect = self.traced.better_pixel_aspect()?;
         let symptom = "the object keeps its shape as it turns only with pixels of another aspect";
-        Some(format!(
+        let message = format!(
             "{symptom}: give --pixel-aspect {aspect:.2} (width over height), or the angles are wrong; or the camera looks at it from aside: --rectify"
-        ))
+        );
+        Some((OriginWarning::PixelAspect, message))
     }
 
     /// Why the way of tracing is not to be trusted, with the codes.
@@ -246,6 +252,7 @@ impl PictureInput {
             warnings.push((OriginWarning::Interlaced, message));
         }
         warnings.extend(self.label_warnings());
+        warnings.extend(self.warning_of_aspect());
         warnings
     }
 

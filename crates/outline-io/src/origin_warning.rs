@@ -24,17 +24,20 @@ pub enum OriginWarning {
     LabelLeftOut,
     /// Borders of labels are marked as void, so that nobody knows where in them the objects end.
     VoidBorders,
+    /// The outlines keep their shape as they turn only if pixels are not as high as wide.
+    PixelAspect,
 }
 
 impl OriginWarning {
     /// All of them, what makes outlines worthless first.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::TracingDoubtful,
         Self::MovesBesideRest,
         Self::MovesBeside,
         Self::FilesOutOfOrder,
         Self::LabelInParts,
         Self::LabelLeftOut,
+        Self::PixelAspect,
         Self::RateAssumed,
         Self::Interlaced,
         Self::VoidBorders,
@@ -53,6 +56,7 @@ impl OriginWarning {
             Self::LabelInParts => "label_in_parts",
             Self::LabelLeftOut => "label_left_out",
             Self::VoidBorders => "void_borders",
+            Self::PixelAspect => "pixel_aspect",
         }
     }
 
@@ -83,6 +87,9 @@ impl fmt::Display for OriginWarning {
             Self::LabelLeftOut => "a label has no outline in a picture in which others have one",
             Self::VoidBorders => {
                 "borders of objects are marked as void (255): outlines are laid along their middle, as nobody knows where in them the objects end"
+            }
+            Self::PixelAspect => {
+                "the object keeps its shape as it turns only with pixels of another aspect, with which its angles are others"
             }
         })
     }

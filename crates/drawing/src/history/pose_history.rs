@@ -1,8 +1,6 @@
 //! Where an object was over time, kept for figures.
-use std::f64::consts::TAU;
-
 use freeform_motion::estimate::MotionState;
-use freeform_motion::tracker::Observation;
+use freeform_motion::tracker::{ContinuousAngle, Observation};
 
 use super::thinned::{Kept, Thinned};
 
@@ -14,7 +12,7 @@ const MOST_KEPT: usize = 1000;
 pub(crate) struct PoseHistory {
     samples: Thinned<PoseSample>,
     segment: usize,
-    last_angle: f64,
+    angles: ContinuousAngle,
 }
 
 /// Where an object was at one time.
@@ -37,7 +35,7 @@ impl PoseHistory {
         // Nobody knows how far the object has turned between segments.
         if observation.segment != self.segment {
             self.segment = observation.segment;
-            self.last_angle = 0.0;
+            self.angles = ContinuousAngle::default();
             self.samples.break_off();
         }
         let Some(state) = present_state(observation) else { return self.samples.skip() };
@@ -45,13 +43,13 @@ impl PoseHistory {
         let is_ambiguous = observation.ambiguity.is_some();
         let mut parameters = Vec::new();
         for parameter in state.pose_parameters() {
-            let mut value = parameter.value;
-            if parameter.name == "angle" && value.is_finite() {
-                value += TAU * ((self.last_angle - value) / TAU).round();
-                self.last_angle = value;
+            let (mut value, mut deviation) = (parameter.value, parameter.standard_deviation);
+            if parameter.name == "angle" {
+                let (angle, missed) = self.angles.next(state, value);
+                (value, deviation) = (angle, deviation.hypot(missed));
             }
             let is_stated = value.is_finite() && !(is_ambiguous && parameter.name == "angle");
-            parameters.push(is_stated.then_some([value, parameter.standard_deviation]));
+            parameters.push(is_stated.then_some([value, deviation]));
         }
         self.samples.push(PoseSample { time: state.time(), parameters });
         if self.samples.kept().len() > MOST_KEPT {

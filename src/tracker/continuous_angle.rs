@@ -1,0 +1,138 @@
+//! Angles that go on beyond half a turn.
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use freeform_estimate::MotionState;
+
+/// The angle of the poses of an object, continuous over time. Of the whole turns that it may have made since the pose before, those are counted that its
+/// angular velocity has made, the mean of those at both poses; the fewest where neither is known.
+///
+/// Where an object was not seen for long, and its angular velocity is not known well enough, or was another one before than it is afterwards, whole turns may have
+/// been missed. The standard deviation of all angles from then on has what that may be.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ContinuousAngle {
+    last: Option<LastPose>,
+    /// Of whole turns that may have been missed, rad.
+    deviation: f64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct LastPose {
+    /// In seconds.
+    time: f64,
+    angle: f64,
+    omega: Option<Omega>,
+}
+
+/// An angular velocity and its standard deviation, rad/s.
+#[derive(Debug, Clone, Copy)]
+struct Omega {
+    value: f64,
+    deviation: f64,
+}
+
+impl Omega {
+    fn of(state: &MotionState) -> Option<Self> {
+        let motion = state.motion();
+        let omega = motion.parameters().find(|parameter| parameter.name == "omega")?;
+        Some(Self { value: omega.value?, deviation: omega.standard_deviation? })
+    }
+}
+
+impl ContinuousAngle {
+    /// The angle of the next pose, in rad, of an angle between -pi and pi, and the standard deviation that comes to its own. An angle that is not known is
+    /// returned as it is.
+    pub fn next(&mut self, state: &MotionState, angle: f64) -> (f64, f64) {
+        if !angle.is_finite() {
+            return (angle, 0.0);
+        }
+        let (time, omega) = (state.time(), Omega::of(state));
+        let mut expected = 0.0;
+        if let Some(last) = self.last {
+            let seconds = time - last.time;
+            let known = last.omega.or(omega).zip(omega.or(last.omega));
+            let (turn, spread) = known.map_or((0.0, 0.0), |(before, now)| {
+                let apart = 0.5 * (now.value - before.value);
+                (0.5 * (before.value + now.value), apart.hypot(before.deviation.max(now.deviation)))
+            });
+            expected = last.angle + turn * seconds;
+            let spread = spread * seconds;
+            // Two deviations of it reach half a turn, from where on another whole turn is nearer.
+            if spread > FRAC_PI_2 {
+                self.deviation = self.deviation.hypot(spread);
+            }
+        }
+        let angle = angle + TAU * ((expected - angle) / TAU).round();
+        self.last = Some(LastPose { time, angle, omega });
+        (angle, self.deviation)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use freeform_estimate::NormalisedState;
+    use freeform_riccati::{MAX_PARAMETERS, MotionModel};
+    use nalgebra::{DMatrix, Matrix3, Point2};
+
+    use super::*;
+
+    fn state(time: f64, omega: f64, deviation: f64) -> MotionState {
+        let mut motion = [0.0; MAX_PARAMETERS];
+        motion[0] = omega;
+        let covariance = DMatrix::identity(6, 6) * (deviation * deviation);
+        NormalisedState {
+            model: MotionModel::Rigid,
+            time,
+            origin: Point2::origin(),
+            radius: 1.0,
+            pose: Matrix3::identity(),
+            motion,
+            covariance: covariance.clone(),
+            body_frame: DMatrix::zeros(3, 3),
+            covariance_given_outline: covariance,
+            observable: [true; MAX_PARAMETERS],
+            hidden: [false; MAX_PARAMETERS],
+            centroid: Point2::origin(),
+        }
+        .into()
+    }
+
+    /// The last of some angles, of times, angular velocities and their deviation, which are taken between -pi and pi.
+    fn last(poses: &[(f64, f64, f64)], deviation: f64) -> (f64, f64) {
+        let mut angles = ContinuousAngle::default();
+        let mut last = (0.0, 0.0);
+        for (time, angle, omega) in poses {
+            last = angles.next(&state(*time, *omega, deviation), angle - TAU * (angle / TAU).round());
+        }
+        last
+    }
+
+    #[test]
+    fn whole_turns_that_were_made_while_nothing_was_seen_are_those_of_the_motion() {
+        for omega in [-9.0, -1.5, 0.3, 4.0] {
+            let seen = [0.0, 0.1, 0.2, 2.7, 2.8].map(|time| (time, omega * time, omega));
+            let (angle, deviation) = last(&seen, 0.01);
+            assert!((angle - 2.8 * omega).abs() < 1e-9 && deviation == 0.0, "{omega}: {angle} {deviation}");
+        }
+    }
+
+    #[test]
+    fn where_whole_turns_may_have_been_missed_all_angles_from_then_on_say_so() {
+        // It was faster before by 3 rad/s, for two seconds: what it has made of them nobody knows.
+        let (angle, deviation) = last(&[(0.0, 0.0, 4.0), (2.0, 5.0, 1.0), (2.1, 5.1, 1.0)], 0.01);
+        assert!((angle - 5.1).abs() < 1e-9 && (deviation - 3.0).abs() < 0.01, "{angle} {deviation}");
+        let (_, unknown) = last(&[(0.0, 0.0, 4.0), (3.0, 12.0, 4.0)], 1.0);
+        assert!((unknown - 3.0).abs() < 1e-9, "{unknown}");
+    }
+
+    #[test]
+    fn angles_begin_near_none_and_those_that_are_not_known_are_passed_over() {
+        assert_eq!(last(&[(0.0, PI - 0.1, 0.0)], 0.01).0, PI - 0.1);
+        let mut angles = ContinuousAngle::default();
+        let first = angles.next(&state(0.0, 40.0, 0.1), 3.0);
+        assert!(angles.next(&state(0.01, 40.0, 0.1), f64::NAN).0.is_nan());
+        let next = angles.next(&state(0.02, 40.0, 0.1), 3.8 - TAU);
+        assert!(first == (3.0, 0.0) && (next.0 - 3.8).abs() < 1e-9, "{first:?} {next:?}");
+    }
+}
