@@ -65,6 +65,8 @@ pub(crate) fn present_state(observation: &Observation) -> Option<&MotionState> {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use freeform_motion::curve_fit::Outline;
     use freeform_motion::outline_io::OutlineFrame;
     use freeform_motion::{Tracker, TrackerSettings};
