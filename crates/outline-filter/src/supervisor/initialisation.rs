@@ -7,7 +7,7 @@ use super::{
     motion_filter::{MotionFilter, Phase},
     settings::FilterSettings,
     tracking::{Turns, advance_again},
-    window::{Draft, InitialisationWindow, Measured, Placed, Remapped, Remapping},
+    window::{Ahead, Draft, Due, InitialisationWindow, Measured, Placed, Remapped, Remapping},
 };
 use crate::{
     map::{TurnEvent, TurnEvidence},
@@ -49,34 +49,26 @@ impl MotionFilter {
                     let most = frames_at_once(1 + self.turn_hypotheses.followed().count());
                     self.go_on(*measured, most)
                 }
-                Remapping::Placed(placed) if placed.turn == turn => self.draft_along(*placed),
-                Remapping::Again { cuts } => self.draft(cuts),
+                Remapping::Placed(placed) if placed.turn == turn => Remapping::Due(Due::Cutting(placed)),
+                Remapping::Again { cuts } => Remapping::Due(Due::Placing { turn, cuts }),
                 // The map is cut for another hypothesis where they have been exchanged meanwhile.
-                Remapping::Placed(_) | Remapping::Drafted(_) | Remapping::Measured(_) | Remapping::Idle => {
-                    self.draft(0)
-                }
+                _ => Remapping::Due(Due::Placing { turn, cuts: 0 }),
             };
             self.window.set_remapping(next);
+            if !self.leaves_work() {
+                self.do_what_is_due();
+            }
         }
+        self.end_window_unless_few();
+    }
+
+    /// Forgets the frames kept unless they are in use, or more of them would make the map better.
+    pub(super) fn end_window_unless_few(&mut self) {
         self.window.end_unless_few(self.track.as_ref().map_or(0, Track::cell_count));
     }
 
-    /// Measures the frames kept on cells that were cut after the last of them, before the next frame is looked at: by the coarse map it might be
-    /// taken for another thing. Where there are rivals, they take their turns instead.
-    pub(super) fn measure_before_next(&mut self) {
-        let is_followed = self.phase == Phase::Tracking && self.turn_hypotheses.followed().next().is_none();
-        if !is_followed || !self.window.is_drafted_for(self.turn_hypotheses.present_turn()) {
-            return;
-        }
-        if let Remapping::Drafted(draft) = self.window.take_remapping() {
-            let next = self.measure(*draft);
-            self.window.set_remapping(next);
-            self.window.end_unless_few(self.track.as_ref().map_or(0, Track::cell_count));
-        }
-    }
-
-    /// Cuts the map anew from the first frames, after so many cuts; where there are rivals, in the frame after this.
-    fn draft(&mut self, cuts: usize) -> Remapping {
+    /// Cuts the map anew from the first frames, for the hypothesis of a turn, after so many cuts; where there are rivals, in the frame after this.
+    pub(super) fn draft(&mut self, turn: f64, cuts: usize) -> Remapping {
         let Some(track) = &self.track else { return Remapping::Idle };
         let hypotheses = 1 + self.turn_hypotheses.followed().count();
         if hypotheses > 1 && kept_once_measured(self.window.len(), hypotheses) > tuning::MOST_KEPT {
@@ -84,7 +76,6 @@ impl MotionFilter {
         }
         let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns_of_kept() };
         let frames = remapper.placed(track, remapper.may_change(&self.history));
-        let turn = self.turn_hypotheses.present_turn();
         let Some(runs) = track.points_along(&frames, 1, &mut self.frame) else { return Remapping::Idle };
         let placed = Placed { runs, turn, cuts };
         if hypotheses == 1 {
@@ -94,7 +85,7 @@ impl MotionFilter {
     }
 
     /// As [`draft`](Self::draft), with the points of the frames in order.
-    fn draft_along(&mut self, Placed { runs, turn, cuts }: Placed) -> Remapping {
+    pub(super) fn draft_along(&mut self, Placed { runs, turn, cuts }: Placed) -> Remapping {
         let first = self.window.first();
         let cut =
             self.track.as_ref().zip(first).and_then(|(track, first)| track.recut_along(runs, first, &mut self.frame));
@@ -102,20 +93,26 @@ impl MotionFilter {
     }
 
     /// Measures the frames kept on cells cut anew.
-    fn measure(&mut self, mut draft: Draft) -> Remapping {
-        let Some(track) = &self.track else { return Remapping::Idle };
-        let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns_of_kept() };
-        let frames = remapper.placed(track, false);
-        let Some(first) = frames.first() else { return Remapping::Idle };
-        draft.track.begin_as(track, first.outline, &mut self.frame);
-        let present = Remapped::at_first(draft.track.clone());
+    pub(super) fn measure(&mut self, draft: Draft) -> Remapping {
+        let Draft { track, turn, cuts } = draft;
+        let Some(track) = self.begun_on(track) else { return Remapping::Idle };
         let hypotheses = 1 + self.turn_hypotheses.followed().count();
         if hypotheses == 1 {
-            let Some(present) = remapper.taken(present, &frames, &mut self.frame) else { return Remapping::Idle };
-            return self.exchange(Measured { begun: draft, present, rivals: Vec::new() });
+            let ahead = Ahead::Taking(Box::new(Remapped::at_first(track)));
+            return self.exchange_for(ahead, cuts);
         }
-        let measured = Measured { begun: draft, present, rivals: Vec::new() };
+        let present = Remapped::at_first(track.clone());
+        let measured = Measured { begun: Draft { track, turn, cuts }, present, rivals: Vec::new() };
         self.go_on(measured, frames_at_once(hypotheses) - tuning::FRAMES_OF_BEGINNING)
+    }
+
+    /// Takes so many more of the frames kept on the new cells, at most.
+    pub(super) fn take_kept(&mut self, remapped: Remapped, most: usize) -> Option<Remapped> {
+        let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns_of_kept() };
+        let frames = remapper.placed(&remapped.track, false);
+        let next = remapped.frames_taken();
+        let end = next.saturating_add(most).min(frames.len());
+        remapper.taken(remapped, frames.get(next.checked_sub(1)?..end)?, &mut self.frame)
     }
 
     /// Takes so many of the frames kept on the new cells, always with the hypothesis that has taken the fewest, and begins one more rival. Once
@@ -148,22 +145,23 @@ impl MotionFilter {
         }
         let has_all = |remapped: &Remapped| remapped.frames_taken() >= frames.len();
         let have_all = is_last && has_all(&present) && rivals.iter().all(|(_, r)| r.as_ref().is_none_or(has_all));
-        let measured = Measured { begun, present, rivals };
-        if have_all { self.exchange(measured) } else { Remapping::Measured(Box::new(measured)) }
+        if !have_all {
+            return Remapping::Measured(Box::new(Measured { begun, present, rivals }));
+        }
+        self.unless_astray(present).map_or(Remapping::Idle, |present| self.exchange(present, rivals, begun.cuts))
     }
 
     /// Exchanges the track, and its rivals with it, for those on cells cut anew, and looks for changes of the motion once more: what was taken for
     /// one may have been what coarse cells left. Better aligned frames make a better map, which aligns them better, so that it is cut again unless
-    /// the pose has settled, or more frames are kept than rivals soon catch up with. A track that has gone astray among the frames kept, and explains
-    /// the last of them worse than where it was, is none to be exchanged for.
-    fn exchange(&mut self, Measured { begun, mut present, mut rivals }: Measured) -> Remapping {
-        let Some((track, last)) = self.track.as_ref().zip(self.window.last()) else { return Remapping::Idle };
-        let poses = [*present.track.body_pose(), *track.body_pose()];
-        let likelihoods = present.track.compared(last, &poses, &mut self.frame);
-        if likelihoods[0].is_worse_than(&likelihoods[1]) {
-            return Remapping::Idle;
-        }
-        if !present.track.turn_leaps(&poses[1], 0.0) {
+    /// the pose has settled, or more frames are kept than rivals soon catch up with.
+    pub(super) fn exchange(
+        &mut self,
+        mut present: Remapped,
+        mut rivals: Vec<(f64, Option<Remapped>)>,
+        cuts: usize,
+    ) -> Remapping {
+        let Some(track) = &self.track else { return Remapping::Idle };
+        if !present.track.turn_leaps(track.body_pose(), 0.0) {
             present.track.go_on_with_turn_profile_of(track);
         }
         self.turn_hypotheses.remap(|turn| {
@@ -179,7 +177,6 @@ impl MotionFilter {
             self.history.change = Default::default();
         }
         self.window.set_poses(present.poses);
-        let cuts = begun.cuts;
         // Each cut with rivals is from a multiple of the frames of the one before, as more are kept while these are measured.
         let are_many = self.window.len() > tuning::OCCASIONS[1] && self.turn_hypotheses.followed().next().is_some();
         if has_settled || are_many || cuts >= tuning::MOST_CUTS { Remapping::Idle } else { Remapping::Again { cuts } }
@@ -291,7 +288,7 @@ mod tests {
             let step = filter.step(f64::from(frame) / 30.0, &turning(frame, 400, egg)).expect("increasing times");
             assert!(step.is_accepted(), "frame {frame}");
             assert_eq!(
-                filter.window.is_drafted_for(filter.turn_hypotheses.present_turn()),
+                filter.window.drafted_for(filter.turn_hypotheses.present_turn()).is_some(),
                 frame == 3,
                 "frame {frame}"
             );

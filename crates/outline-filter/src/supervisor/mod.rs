@@ -1,6 +1,7 @@
 //! The motion filter: phases, restarts, hypotheses and changes of the motion. The only state machine.
 mod acquisition;
 mod ambiguity;
+mod between_frames;
 mod candidate;
 mod clock;
 mod counts;
