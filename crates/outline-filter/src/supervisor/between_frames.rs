@@ -148,3 +148,66 @@ impl MotionFilter {
         (!likelihoods[0].is_worse_than(&likelihoods[1])).then_some(present)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{drawn_curves::turning, supervisor::settings::FilterSettings};
+
+    fn step(filter: &mut MotionFilter, frame: u32) {
+        let egg = |t: f64| 1.0 + 0.2 * t.cos() + 0.1 * (3.0 * t).sin();
+        let step = filter.step(f64::from(frame) / 30.0, &turning(frame, 400, egg)).expect("increasing times");
+        assert!(step.is_accepted(), "frame {frame}");
+    }
+
+    /// A filter after the frame in which its map is first cut, called once after every frame before that in which `is_called`.
+    fn cut_after(is_called: impl Fn(u32) -> bool) -> MotionFilter {
+        let mut filter = MotionFilter::new(FilterSettings::default()).expect("settings");
+        for frame in 0..4 {
+            step(&mut filter, frame);
+            if frame < 3 && is_called(frame) {
+                assert!(!filter.prepare(), "frame {frame}");
+            }
+        }
+        filter
+    }
+
+    #[test]
+    fn the_cut_is_left_to_one_who_called_before_the_frame_and_to_nobody_else() {
+        for (is_left, filter) in [
+            (true, cut_after(|_| true)),
+            (true, cut_after(|frame| frame == 2)),
+            (false, cut_after(|_| false)),
+            (false, cut_after(|frame| frame < 2)),
+        ] {
+            assert_eq!(filter.window.is_due(), is_left);
+            assert_eq!(filter.window.drafted_for(filter.turn_hypotheses.present_turn()).is_some(), !is_left);
+        }
+    }
+
+    #[test]
+    fn the_map_is_cut_and_all_frames_are_measured_before_the_next_frame_as_soon_as_nothing_waits() {
+        let mut filter = cut_after(|_| true);
+        let cells = filter.track.as_ref().map(Track::cell_count);
+        let mut calls = 1;
+        while filter.prepare() {
+            calls += 1;
+        }
+        // The cut, the first of four frames, each of the others, and whether the track has gone astray among them.
+        assert_eq!(calls, 6);
+        assert!(matches!(filter.window.ahead(), Some(Ahead::Taken(Some(taken))) if taken.frames_taken() == 4));
+        assert_eq!(filter.track.as_ref().map(Track::cell_count), cells);
+        assert!(!filter.prepare());
+        step(&mut filter, 4);
+        assert!(filter.window.ahead().is_none());
+        assert!(filter.track.as_ref().map(Track::cell_count) > cells);
+    }
+
+    #[test]
+    fn what_is_left_and_not_done_is_done_by_the_next_frame() {
+        let mut filter = cut_after(|_| true);
+        let cells = filter.track.as_ref().map(Track::cell_count);
+        step(&mut filter, 4);
+        assert!(filter.track.as_ref().map(Track::cell_count) > cells);
+    }
+}
