@@ -53,8 +53,10 @@ impl MotionFilter {
             self.do_what_is_due();
         } else {
             self.measure_ahead();
+            self.take_ahead();
         }
-        self.window.is_due() || self.may_measure() && !matches!(self.window.ahead(), Some(Ahead::Taken(_)))
+        let may_measure = self.may_measure() && !matches!(self.window.ahead(), Some(Ahead::Taken(_)));
+        self.window.is_due() || may_measure || self.next_to_take().is_some()
     }
 
     /// Whether what is due after this frame is left to be done before the next. It says nothing that is stated after this one, unless a few frames

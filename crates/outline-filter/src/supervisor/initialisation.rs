@@ -6,6 +6,7 @@ use super::{
     motion_change::MotionHistory,
     motion_filter::{MotionFilter, Phase},
     settings::FilterSettings,
+    taken_ahead::{Hypothesis, TakenAhead},
     tracking::{Turns, advance_again},
     window::{Ahead, Draft, Due, InitialisationWindow, Measured, Placed, Remapped, Remapping},
 };
@@ -34,7 +35,7 @@ impl MotionFilter {
             return;
         }
         let is_due = self.window.keep(time, outline, track);
-        let remapping = self.window.take_remapping();
+        let (remapping, ahead) = (self.window.take_remapping(), std::mem::take(self.window.taken_ahead_mut()));
         let is_idle = matches!(remapping, Remapping::Idle);
         if is_idle && !(is_due || changes) || !self.window.are_several() {
             return;
@@ -47,7 +48,7 @@ impl MotionFilter {
                 Remapping::Drafted(draft) if draft.turn == turn => self.measure(*draft),
                 Remapping::Measured(measured) if measured.begun.turn == turn => {
                     let most = frames_at_once(1 + self.turn_hypotheses.followed().count());
-                    self.go_on(*measured, most)
+                    self.go_on(*measured, most, ahead)
                 }
                 Remapping::Placed(placed) if placed.turn == turn => Remapping::Due(Due::Cutting(placed)),
                 Remapping::Again { cuts } => Remapping::Due(Due::Placing { turn, cuts }),
@@ -103,7 +104,7 @@ impl MotionFilter {
         }
         let present = Remapped::at_first(track.clone());
         let measured = Measured { begun: Draft { track, turn, cuts }, present, rivals: Vec::new() };
-        self.go_on(measured, frames_at_once(hypotheses) - tuning::FRAMES_OF_BEGINNING)
+        self.go_on(measured, frames_at_once(hypotheses) - tuning::FRAMES_OF_BEGINNING, TakenAhead::default())
     }
 
     /// Takes so many more of the frames kept on the new cells, at most.
@@ -115,9 +116,14 @@ impl MotionFilter {
         remapper.taken(remapped, frames.get(next.checked_sub(1)?..end)?, &mut self.frame)
     }
 
-    /// Takes so many of the frames kept on the new cells, always with the hypothesis that has taken the fewest, and begins one more rival. Once
-    /// all have taken all frames they are exchanged at once: one alone would win by its finer cells.
-    fn go_on(&mut self, Measured { begun, mut present, mut rivals }: Measured, most: usize) -> Remapping {
+    /// Takes so many of the frames kept on the new cells, those first that have been taken `ahead`, always with the hypothesis that has taken the
+    /// fewest, and begins one more rival. Once all have taken all frames they are exchanged at once: one alone would win by its finer cells.
+    fn go_on(
+        &mut self,
+        Measured { begun, mut present, mut rivals }: Measured,
+        most: usize,
+        mut ahead: TakenAhead,
+    ) -> Remapping {
         let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns_of_kept() };
         let frame = &mut self.frame;
         let frames = remapper.placed(&present.track, false);
@@ -128,16 +134,19 @@ impl MotionFilter {
         if let Some((turn, rival)) = next {
             rivals.push((turn, remapper.on_map_of(&begun.track, rival, frame)));
         }
+        let mut with_next = |of: Hypothesis, remapped: Remapped| {
+            let ahead = ahead.take(of, remapped.frames_taken(), remapper.turns);
+            ahead.unwrap_or_else(|| remapper.taken_next(remapped, &frames, frame))
+        };
         for _ in 0..most {
             let of_rivals = rivals.iter_mut().filter(|(_, rival)| rival.is_some());
             let behind = of_rivals.min_by_key(|(_, rival)| rival.as_ref().map(Remapped::frames_taken));
-            let behind = behind.map(|(_, rival)| rival);
             match behind {
-                Some(rival) if rival.as_ref().map(Remapped::frames_taken) < Some(present.frames_taken()) => {
-                    *rival = rival.take().and_then(|rival| remapper.taken_next(rival, &frames, frame));
+                Some((turn, rival)) if rival.as_ref().map(Remapped::frames_taken) < Some(present.frames_taken()) => {
+                    *rival = rival.take().and_then(|rival| with_next(Hypothesis::Rival { turn: *turn }, rival));
                 }
                 _ if present.frames_taken() < frames.len() => {
-                    let Some(next) = remapper.taken_next(present, &frames, frame) else { return Remapping::Idle };
+                    let Some(next) = with_next(Hypothesis::Present, present) else { return Remapping::Idle };
                     present = next;
                 }
                 _ => break,
@@ -250,7 +259,7 @@ impl Remapper<'_> {
 }
 
 /// Frames kept that are taken on new cells in one step, by the number of hypotheses which all take the frame of that step besides.
-fn frames_at_once(hypotheses: usize) -> usize {
+pub(super) fn frames_at_once(hypotheses: usize) -> usize {
     tuning::MEASURED_AT_ONCE.saturating_sub(hypotheses).max(hypotheses + tuning::FRAMES_OF_BEGINNING)
 }
 

@@ -22,6 +22,7 @@ mod state_bytes;
 mod stated;
 mod statement;
 mod symmetry_angle;
+mod taken_ahead;
 mod tracking;
 mod turn_hypotheses;
 mod turn_hypothesis;

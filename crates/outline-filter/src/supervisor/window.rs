@@ -1,9 +1,9 @@
 use freeform_curve_fit::Outline;
 use nalgebra::{Matrix3, Point2};
 
-use super::motion_change::MotionHistory;
 #[cfg(feature = "serde")]
 use super::settings::FilterSettings;
+use super::{motion_change::MotionHistory, taken_ahead::TakenAhead};
 #[cfg(feature = "serde")]
 use crate::track::SavedCells;
 use crate::{
@@ -142,6 +142,9 @@ pub(super) struct InitialisationWindow {
     /// Of a map that has been cut, for the next frame alone.
     #[cfg_attr(feature = "serde", serde(skip))]
     ahead: Option<Ahead>,
+    /// Where there are rivals.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    taken_ahead: TakenAhead,
 }
 
 impl InitialisationWindow {
@@ -154,6 +157,7 @@ impl InitialisationWindow {
             state: Window::Open,
             remapping: Remapping::Idle,
             ahead: None,
+            taken_ahead: TakenAhead::default(),
         };
         frames.end_unless_few(track.cell_count());
         frames
@@ -215,6 +219,23 @@ impl InitialisationWindow {
             Remapping::Drafted(draft) if draft.turn == turn => Some(draft),
             _ => None,
         }
+    }
+
+    /// Hypotheses that are measured on a map cut anew for one of the turn.
+    pub(super) fn measured_for(&self, turn: f64) -> Option<&Measured> {
+        match &self.remapping {
+            Remapping::Measured(measured) if measured.begun.turn == turn => Some(measured),
+            _ => None,
+        }
+    }
+
+    /// What becomes of these with further frames, as far as is known.
+    pub(super) fn taken_ahead(&self) -> &TakenAhead {
+        &self.taken_ahead
+    }
+
+    pub(super) fn taken_ahead_mut(&mut self) -> &mut TakenAhead {
+        &mut self.taken_ahead
     }
 
     /// Whether a stage of cutting the map anew is due before the next frame.
