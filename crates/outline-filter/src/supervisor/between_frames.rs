@@ -50,7 +50,7 @@ impl MotionFilter {
     pub fn prepare(&mut self) -> bool {
         self.between_frames.is_called = true;
         if self.window.is_due() {
-            self.do_what_is_due();
+            self.do_stage_that_is_due();
         } else {
             self.measure_ahead();
             self.take_ahead();
@@ -65,11 +65,17 @@ impl MotionFilter {
         self.between_frames.is_left && !self.rests_on_two_parts()
     }
 
-    /// Makes the stage of cutting the map anew that is due, if one is.
+    /// Makes all stages of cutting the map anew that are due, if any are.
     pub(super) fn do_what_is_due(&mut self) {
+        while self.window.is_due() {
+            self.do_stage_that_is_due();
+        }
+    }
+
+    fn do_stage_that_is_due(&mut self) {
         let next = match self.window.take_remapping() {
-            Remapping::Due(Due::Placing { turn, cuts }) => self.draft(turn, cuts),
-            Remapping::Due(Due::Cutting(placed)) => self.draft_along(*placed),
+            Remapping::Due(Due::Placing { turn, cuts }) => self.place(turn, cuts),
+            Remapping::Due(Due::Cutting(placed)) => self.cut(*placed),
             other => return self.window.set_remapping(other),
         };
         self.window.set_remapping(next);
@@ -195,8 +201,8 @@ mod tests {
         while filter.prepare() {
             calls += 1;
         }
-        // The cut, the first of four frames, each of the others, and whether the track has gone astray among them.
-        assert_eq!(calls, 6);
+        // Points in order, the cut, the first of four frames, each of the others, and whether the track has gone astray among them.
+        assert_eq!(calls, 7);
         assert!(matches!(filter.window.ahead(), Some(Ahead::Taken(Some(taken))) if taken.frames_taken() == 4));
         assert_eq!(filter.track.as_ref().map(Track::cell_count), cells);
         assert!(!filter.prepare());

@@ -68,8 +68,9 @@ impl MotionFilter {
         self.window.end_unless_few(self.track.as_ref().map_or(0, Track::cell_count));
     }
 
-    /// Cuts the map anew from the first frames, for the hypothesis of a turn, after so many cuts; where there are rivals, in the frame after this.
-    pub(super) fn draft(&mut self, turn: f64, cuts: usize) -> Remapping {
+    /// Puts the points of the first frames in order, for the hypothesis of a turn, after so many cuts, for a map to be cut along them: where there are
+    /// rivals, after the next frame.
+    pub(super) fn place(&mut self, turn: f64, cuts: usize) -> Remapping {
         let Some(track) = &self.track else { return Remapping::Idle };
         let hypotheses = 1 + self.turn_hypotheses.followed().count();
         if hypotheses > 1 && kept_once_measured(self.window.len(), hypotheses) > tuning::MOST_KEPT {
@@ -78,15 +79,12 @@ impl MotionFilter {
         let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns_of_kept() };
         let frames = remapper.placed(track, remapper.may_change(&self.history));
         let Some(runs) = track.points_along(&frames, 1, &mut self.frame) else { return Remapping::Idle };
-        let placed = Placed { runs, turn, cuts };
-        if hypotheses == 1 {
-            return self.draft_along(placed);
-        }
-        Remapping::Placed(Box::new(placed))
+        let placed = Box::new(Placed { runs, turn, cuts });
+        if hypotheses == 1 { Remapping::Due(Due::Cutting(placed)) } else { Remapping::Placed(placed) }
     }
 
-    /// As [`draft`](Self::draft), with the points of the frames in order.
-    pub(super) fn draft_along(&mut self, Placed { runs, turn, cuts }: Placed) -> Remapping {
+    /// Cuts the map anew along points in order.
+    pub(super) fn cut(&mut self, Placed { runs, turn, cuts }: Placed) -> Remapping {
         let first = self.window.first();
         let cut =
             self.track.as_ref().zip(first).and_then(|(track, first)| track.recut_along(runs, first, &mut self.frame));
@@ -134,19 +132,19 @@ impl MotionFilter {
         if let Some((turn, rival)) = next {
             rivals.push((turn, remapper.on_map_of(&begun.track, rival, frame)));
         }
-        let mut with_next = |of: Hypothesis, remapped: Remapped| {
-            let ahead = ahead.take(of, remapped.frames_taken(), remapper.turns);
-            ahead.unwrap_or_else(|| remapper.taken_next(remapped, &frames, frame))
-        };
         for _ in 0..most {
             let of_rivals = rivals.iter_mut().filter(|(_, rival)| rival.is_some());
             let behind = of_rivals.min_by_key(|(_, rival)| rival.as_ref().map(Remapped::frames_taken));
             match behind {
                 Some((turn, rival)) if rival.as_ref().map(Remapped::frames_taken) < Some(present.frames_taken()) => {
-                    *rival = rival.take().and_then(|rival| with_next(Hypothesis::Rival { turn: *turn }, rival));
+                    let (of, turns) = (Hypothesis::Rival { turn: *turn }, remapper.turns);
+                    let next = |rival| remapper.taken_next(rival, &frames, frame);
+                    *rival = rival.take().and_then(|rival| ahead.take_or(of, turns, rival, next));
                 }
                 _ if present.frames_taken() < frames.len() => {
-                    let Some(next) = with_next(Hypothesis::Present, present) else { return Remapping::Idle };
+                    let (of, turns) = (Hypothesis::Present, remapper.turns);
+                    let next = ahead.take_or(of, turns, present, |track| remapper.taken_next(track, &frames, frame));
+                    let Some(next) = next else { return Remapping::Idle };
                     present = next;
                 }
                 _ => break,

@@ -37,10 +37,19 @@ impl TakenAhead {
         Some(&self.0[self.position(of, after, turns)?].remapped)
     }
 
-    /// What becomes of a hypothesis with the frame after so many, as far as that has been found.
-    pub(super) fn take(&mut self, of: Hypothesis, after: usize, turns: Turns) -> Option<Option<Remapped>> {
-        let at = self.position(of, after, turns)?;
-        Some(self.0.swap_remove(at).remapped)
+    /// What becomes of a hypothesis with one more frame, as has been found, or else as `next` finds. In line, as tracks are large to be handed on.
+    #[inline(always)]
+    pub(super) fn take_or(
+        &mut self,
+        of: Hypothesis,
+        turns: Turns,
+        remapped: Remapped,
+        next: impl FnOnce(Remapped) -> Option<Remapped>,
+    ) -> Option<Remapped> {
+        match self.position(of, remapped.frames_taken(), turns) {
+            Some(at) => self.0.swap_remove(at).remapped,
+            None => next(remapped),
+        }
     }
 }
 
