@@ -163,7 +163,11 @@ impl Tracker {
     /// object does. A control loop that calls this between frames, as long as it has time and it returns true, has no long step to wait for where the
     /// map of an outline is cut anew: see [`MotionFilter::prepare`](freeform_outline_filter::MotionFilter::prepare).
     pub fn prepare(&mut self) -> bool {
-        self.objects.list.iter_mut().fold(false, |waits, object| object.identifier.prepare() || waits)
+        let mut is_more_waiting = false;
+        for object in &mut self.objects.list {
+            is_more_waiting |= object.identifier.prepare();
+        }
+        is_more_waiting
     }
 
     /// Records a frame of an object whose points are not an outline. It counts as rejected. The reason should name the frame.
