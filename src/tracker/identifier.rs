@@ -71,6 +71,17 @@ impl Identifier {
         }
     }
 
+    /// Does a part of the work that waits for the next outline, if there is any; whether more is waiting.
+    pub(super) fn prepare(&mut self) -> bool {
+        match self {
+            Self::Filter(object) => object.filter.prepare(),
+            Self::Plane(object) => object.filter.prepare(),
+            Self::Adaptive(_) => false,
+            #[cfg(feature = "serde")]
+            Self::Resting(_) => false,
+        }
+    }
+
     /// Puts a motion filter to rest in a file; other methods stay as they are.
     #[cfg(feature = "serde")]
     pub(super) fn rest(&mut self, file: &Arc<StateFile>) -> Result<(), RestingError> {

@@ -160,6 +160,18 @@ impl Tracker {
         self.object(&frame.object).push(frame)
     }
 
+    /// Does a part of the work that waits for the next outlines, in every object, while nothing else is to be done; whether more is waiting. All
+    /// results are the same to the last bit whether, when and how often this is called: what is not done by then, the next [`push`](Self::push) of the
+    /// object does. A control loop that calls this between frames, as long as it has time and it returns true, has no long step to wait for where the
+    /// map of an outline is cut anew: see [`MotionFilter::prepare`](freeform_outline_filter::MotionFilter::prepare).
+    pub fn prepare(&mut self) -> bool {
+        let mut is_more_waiting = false;
+        for object in &mut self.objects.list {
+            is_more_waiting |= object.identifier.prepare();
+        }
+        is_more_waiting
+    }
+
     /// Records a frame of an object whose points are not an outline. It counts as rejected. The reason should name the frame.
     pub fn reject(&mut self, object: &str, frame: u64, reason: String) -> Observation {
         self.object(object).reject(frame, reason)

@@ -97,6 +97,27 @@ fn a_recording_gives_on_any_number_of_threads_what_its_frames_give_one_by_one() 
 }
 
 #[test]
+fn work_that_is_done_between_the_frames_of_all_objects_changes_no_result() {
+    let (mut straight, mut prepared) = (tracker(Method::Filter), tracker(Method::Filter));
+    let names = [("bird", BuiltInShape::Bird), ("van", BuiltInShape::Van)];
+    let [birds, vans] = names.map(|(name, shape)| seen(shape, name, 200, 20));
+    let mut most_waiting = 0;
+    for (bird, van) in birds.iter().zip(&vans) {
+        for frame in [bird, van] {
+            assert_eq!(prepared.push(frame), straight.push(frame));
+        }
+        let waiting = std::iter::repeat_with(|| prepared.prepare()).take_while(|is_more_waiting| *is_more_waiting);
+        most_waiting = waiting.count().max(most_waiting);
+    }
+    assert_eq!(prepared.results(), straight.results());
+    // A map that is cut anew from four frames is measured on each of them.
+    assert!(most_waiting > 3, "{most_waiting}");
+    let mut adaptive = tracker(Method::Adaptive);
+    adaptive.push(&birds[0]);
+    assert!(!adaptive.prepare());
+}
+
+#[test]
 fn a_recording_read_frame_by_frame_is_read_no_further_than_handed_on() {
     let read = std::cell::Cell::new(0);
     let recording = recording().into_iter().inspect(|_| read.set(read.get() + 1));

@@ -143,6 +143,17 @@ impl PyTracker {
         Ok(PyObservation::new(inner, scale))
     }
 
+    /// Does a part of the work that waits for the next outlines, in every object, while nothing else is to be done: see `MotionFilter.prepare`.
+    /// Results are the same to the last bit whether, when and how often it is called.
+    ///
+    /// Returns
+    /// -------
+    /// bool
+    ///     Whether more is waiting.
+    fn prepare(&self, py: Python<'_>) -> bool {
+        py.detach(|| self.lock().prepare())
+    }
+
     /// Records a frame of an object whose points are no outline. It counts as rejected.
     ///
     /// Parameters

@@ -212,6 +212,25 @@ def test_a_copy_goes_its_own_way(bird):
     assert motion_filter.frames_accepted == 30
 
 
+def test_work_that_is_done_between_frames_changes_no_result(bird):
+    straight, prepared = ff.MotionFilter(), ff.MotionFilter()
+    trackers = ff.Tracker(), ff.Tracker()
+    waiting = 0
+    for frame in bird:
+        assert repr(prepared.step(frame.time, frame.outline)) == repr(straight.step(frame.time, frame.outline))
+        observations = [tracker.push("bird", frame.index, frame.time, frame.outline) for tracker in trackers]
+        while prepared.prepare():
+            waiting += 1
+        trackers[1].prepare()
+        for one, other in (prepared, straight), observations:
+            assert (one.state is None) == (other.state is None)
+            if one.state is not None:
+                assert one.state.covariance.tobytes() == other.state.covariance.tobytes()
+                assert one.state.estimate.values.tobytes() == other.state.estimate.values.tobytes()
+    # Of the map that is cut anew after the fourth frame, and the four frames measured on it.
+    assert waiting > 3
+
+
 def test_threads_may_share_a_filter_and_others_run_while_it_works(bird):
     motion_filter = ff.MotionFilter()
     lock, frames = threading.Lock(), iter(bird)

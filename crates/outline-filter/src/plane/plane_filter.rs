@@ -79,6 +79,11 @@ impl PlaneFilter {
         Ok(step)
     }
 
+    /// As [`MotionFilter::prepare`], of the filter that follows the object in the picture.
+    pub fn prepare(&mut self) -> bool {
+        self.follower.prepare()
+    }
+
     fn begin_anew(&mut self) {
         self.frames.clear();
         self.solutions.clear();

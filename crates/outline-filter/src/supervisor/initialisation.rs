@@ -6,8 +6,9 @@ use super::{
     motion_change::MotionHistory,
     motion_filter::{MotionFilter, Phase},
     settings::FilterSettings,
+    taken_ahead::{Hypothesis, TakenAhead},
     tracking::{Turns, advance_again},
-    window::{Draft, InitialisationWindow, Measured, Placed, Remapped, Remapping},
+    window::{Ahead, Draft, Due, InitialisationWindow, Measured, Placed, Remapped, Remapping},
 };
 use crate::{
     map::{CellsSeen, TurnEvent, TurnEvidence},
@@ -37,7 +38,7 @@ impl MotionFilter {
             return;
         }
         let is_due = self.window.keep(time, outline, track);
-        let remapping = self.window.take_remapping();
+        let (remapping, ahead) = (self.window.take_remapping(), std::mem::take(self.window.taken_ahead_mut()));
         let is_idle = matches!(remapping, Remapping::Idle);
         if is_idle && !(is_due || changes) || !self.window.are_several() {
             return;
@@ -50,36 +51,29 @@ impl MotionFilter {
                 Remapping::Drafted(draft) if draft.turn == turn => self.measure(*draft),
                 Remapping::Measured(measured) if measured.begun.turn == turn => {
                     let most = frames_at_once(1 + self.turn_hypotheses.followed().count());
-                    self.go_on(*measured, most)
+                    self.go_on(*measured, most, ahead)
                 }
-                Remapping::Placed(placed) if placed.turn == turn => self.draft_along(*placed),
-                Remapping::Again { cuts } => self.draft(cuts),
+                Remapping::Placed(placed) if placed.turn == turn => Remapping::Due(Due::Cutting(placed)),
+                Remapping::Again { cuts } => Remapping::Due(Due::Placing { turn, cuts }),
                 // The map is cut for another hypothesis where they have been exchanged meanwhile.
-                Remapping::Placed(_) | Remapping::Drafted(_) | Remapping::Measured(_) | Remapping::Idle => {
-                    self.draft(0)
-                }
+                _ => Remapping::Due(Due::Placing { turn, cuts: 0 }),
             };
             self.window.set_remapping(next);
+            if !self.leaves_work() {
+                self.do_what_is_due();
+            }
         }
+        self.end_window_unless_few();
+    }
+
+    /// Forgets the frames kept unless they are in use, or more of them would make the map better.
+    pub(super) fn end_window_unless_few(&mut self) {
         self.window.end_unless_few(self.track.as_ref().map_or(0, Track::cell_count));
     }
 
-    /// Measures the frames kept on cells that were cut after the last of them, before the next frame is looked at: by the coarse map it might be
-    /// taken for another thing. Where there are rivals, they take their turns instead.
-    pub(super) fn measure_before_next(&mut self) {
-        let is_followed = self.phase == Phase::Tracking && self.turn_hypotheses.followed().next().is_none();
-        if !is_followed || !self.window.is_drafted_for(self.turn_hypotheses.present_turn()) {
-            return;
-        }
-        if let Remapping::Drafted(draft) = self.window.take_remapping() {
-            let next = self.measure(*draft);
-            self.window.set_remapping(next);
-            self.window.end_unless_few(self.track.as_ref().map_or(0, Track::cell_count));
-        }
-    }
-
-    /// Cuts the map anew from the first frames, after so many cuts; where there are rivals, in the frame after this.
-    fn draft(&mut self, cuts: usize) -> Remapping {
+    /// Puts the points of the first frames in order, for the hypothesis of a turn, after so many cuts, for a map to be cut along them: where there are
+    /// rivals, after the next frame.
+    pub(super) fn place(&mut self, turn: f64, cuts: usize) -> Remapping {
         let Some(track) = &self.track else { return Remapping::Idle };
         let hypotheses = 1 + self.turn_hypotheses.followed().count();
         if hypotheses > 1 && kept_once_measured(self.window.len(), hypotheses) > tuning::MOST_KEPT {
@@ -87,17 +81,13 @@ impl MotionFilter {
         }
         let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns_of_kept() };
         let frames = remapper.placed(track, remapper.may_change(&self.history));
-        let turn = self.turn_hypotheses.present_turn();
         let Some(runs) = track.points_along(&frames, 1, &mut self.frame) else { return Remapping::Idle };
-        let placed = Placed { runs, turn, cuts };
-        if hypotheses == 1 {
-            return self.draft_along(placed);
-        }
-        Remapping::Placed(Box::new(placed))
+        let placed = Box::new(Placed { runs, turn, cuts });
+        if hypotheses == 1 { Remapping::Due(Due::Cutting(placed)) } else { Remapping::Placed(placed) }
     }
 
-    /// As [`draft`](Self::draft), with the points of the frames in order.
-    fn draft_along(&mut self, Placed { runs, turn, cuts }: Placed) -> Remapping {
+    /// Cuts the map anew along points in order.
+    pub(super) fn cut(&mut self, Placed { runs, turn, cuts }: Placed) -> Remapping {
         let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns_of_kept() };
         let seen = remapper.cells_seen(&self.history);
         let placed = self.track.as_ref().zip(self.window.first());
@@ -106,25 +96,36 @@ impl MotionFilter {
     }
 
     /// Measures the frames kept on cells cut anew.
-    fn measure(&mut self, mut draft: Draft) -> Remapping {
-        let Some(track) = &self.track else { return Remapping::Idle };
-        let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns_of_kept() };
-        let frames = remapper.placed(track, false);
-        let Some(first) = frames.first() else { return Remapping::Idle };
-        draft.track.begin_as(track, first.outline, &mut self.frame);
-        let present = Remapped::at_first(draft.track.clone());
+    pub(super) fn measure(&mut self, draft: Draft) -> Remapping {
+        let Draft { track, turn, cuts } = draft;
+        let Some(track) = self.begun_on(track) else { return Remapping::Idle };
         let hypotheses = 1 + self.turn_hypotheses.followed().count();
         if hypotheses == 1 {
-            let Some(present) = remapper.taken(present, &frames, &mut self.frame) else { return Remapping::Idle };
-            return self.exchange(Measured { begun: draft, present, rivals: Vec::new() });
+            let ahead = Ahead::Taking(Box::new(Remapped::at_first(track)));
+            return self.exchange_for(ahead, cuts);
         }
-        let measured = Measured { begun: draft, present, rivals: Vec::new() };
-        self.go_on(measured, frames_at_once(hypotheses) - tuning::FRAMES_OF_BEGINNING)
+        let present = Remapped::at_first(track.clone());
+        let measured = Measured { begun: Draft { track, turn, cuts }, present, rivals: Vec::new() };
+        self.go_on(measured, frames_at_once(hypotheses) - tuning::FRAMES_OF_BEGINNING, TakenAhead::default())
     }
 
-    /// Takes so many of the frames kept on the new cells, always with the hypothesis that has taken the fewest, and begins one more rival. Once
-    /// all have taken all frames they are exchanged at once: one alone would win by its finer cells.
-    fn go_on(&mut self, Measured { begun, mut present, mut rivals }: Measured, most: usize) -> Remapping {
+    /// Takes so many more of the frames kept on the new cells, at most.
+    pub(super) fn take_kept(&mut self, remapped: Remapped, most: usize) -> Option<Remapped> {
+        let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns_of_kept() };
+        let frames = remapper.placed(&remapped.track, false);
+        let next = remapped.frames_taken();
+        let end = next.saturating_add(most).min(frames.len());
+        remapper.taken(remapped, frames.get(next.checked_sub(1)?..end)?, &mut self.frame)
+    }
+
+    /// Takes so many of the frames kept on the new cells, those first that have been taken `ahead`, always with the hypothesis that has taken the
+    /// fewest, and begins one more rival. Once all have taken all frames they are exchanged at once: one alone would win by its finer cells.
+    fn go_on(
+        &mut self,
+        Measured { begun, mut present, mut rivals }: Measured,
+        most: usize,
+        mut ahead: TakenAhead,
+    ) -> Remapping {
         let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns_of_kept() };
         let frame = &mut self.frame;
         let frames = remapper.placed(&present.track, false);
@@ -138,13 +139,16 @@ impl MotionFilter {
         for _ in 0..most {
             let of_rivals = rivals.iter_mut().filter(|(_, rival)| rival.is_some());
             let behind = of_rivals.min_by_key(|(_, rival)| rival.as_ref().map(Remapped::frames_taken));
-            let behind = behind.map(|(_, rival)| rival);
             match behind {
-                Some(rival) if rival.as_ref().map(Remapped::frames_taken) < Some(present.frames_taken()) => {
-                    *rival = rival.take().and_then(|rival| remapper.taken_next(rival, &frames, frame));
+                Some((turn, rival)) if rival.as_ref().map(Remapped::frames_taken) < Some(present.frames_taken()) => {
+                    let (of, turns) = (Hypothesis::Rival { turn: *turn }, remapper.turns);
+                    let next = |rival| remapper.taken_next(rival, &frames, frame);
+                    *rival = rival.take().and_then(|rival| ahead.take_or(of, turns, rival, next));
                 }
                 _ if present.frames_taken() < frames.len() => {
-                    let Some(next) = remapper.taken_next(present, &frames, frame) else { return Remapping::Idle };
+                    let (of, turns) = (Hypothesis::Present, remapper.turns);
+                    let next = ahead.take_or(of, turns, present, |track| remapper.taken_next(track, &frames, frame));
+                    let Some(next) = next else { return Remapping::Idle };
                     present = next;
                 }
                 _ => break,
@@ -152,22 +156,23 @@ impl MotionFilter {
         }
         let has_all = |remapped: &Remapped| remapped.frames_taken() >= frames.len();
         let have_all = is_last && has_all(&present) && rivals.iter().all(|(_, r)| r.as_ref().is_none_or(has_all));
-        let measured = Measured { begun, present, rivals };
-        if have_all { self.exchange(measured) } else { Remapping::Measured(Box::new(measured)) }
+        if !have_all {
+            return Remapping::Measured(Box::new(Measured { begun, present, rivals }));
+        }
+        self.unless_astray(present).map_or(Remapping::Idle, |present| self.exchange(present, rivals, begun.cuts))
     }
 
     /// Exchanges the track, and its rivals with it, for those on cells cut anew, and looks for changes of the motion once more: what was taken for
     /// one may have been what coarse cells left. Better aligned frames make a better map, which aligns them better, so that it is cut again unless
-    /// the pose has settled, or more frames are kept than rivals soon catch up with. A track that has gone astray among the frames kept, and explains
-    /// the last of them worse than where it was, is none to be exchanged for.
-    fn exchange(&mut self, Measured { begun, mut present, mut rivals }: Measured) -> Remapping {
-        let Some((track, last)) = self.track.as_ref().zip(self.window.last()) else { return Remapping::Idle };
-        let poses = [*present.track.body_pose(), *track.body_pose()];
-        let likelihoods = present.track.compared(last, &poses, &mut self.frame);
-        if likelihoods[0].is_worse_than(&likelihoods[1]) {
-            return Remapping::Idle;
-        }
-        if !present.track.turn_leaps(&poses[1], 0.0) {
+    /// the pose has settled, or more frames are kept than rivals soon catch up with.
+    pub(super) fn exchange(
+        &mut self,
+        mut present: Remapped,
+        mut rivals: Vec<(f64, Option<Remapped>)>,
+        cuts: usize,
+    ) -> Remapping {
+        let Some(track) = &self.track else { return Remapping::Idle };
+        if !present.track.turn_leaps(track.body_pose(), 0.0) {
             present.track.go_on_with_turn_profile_of(track);
         }
         self.turn_hypotheses.remap(|turn| {
@@ -183,7 +188,6 @@ impl MotionFilter {
             self.history.change = Default::default();
         }
         self.window.set_poses(present.poses);
-        let cuts = begun.cuts;
         // Each cut with rivals is from a multiple of the frames of the one before, as more are kept while these are measured.
         let are_many = self.window.len() > tuning::OCCASIONS[1] && self.turn_hypotheses.followed().next().is_some();
         if has_settled || are_many || cuts >= tuning::MOST_CUTS { Remapping::Idle } else { Remapping::Again { cuts } }
@@ -262,7 +266,7 @@ impl Remapper<'_> {
 }
 
 /// Frames kept that are taken on new cells in one step, by the number of hypotheses which all take the frame of that step besides.
-fn frames_at_once(hypotheses: usize) -> usize {
+pub(super) fn frames_at_once(hypotheses: usize) -> usize {
     tuning::MEASURED_AT_ONCE.saturating_sub(hypotheses).max(hypotheses + tuning::FRAMES_OF_BEGINNING)
 }
 
@@ -300,7 +304,7 @@ mod tests {
             let step = filter.step(f64::from(frame) / 30.0, &turning(frame, 400, egg)).expect("increasing times");
             assert!(step.is_accepted(), "frame {frame}");
             assert_eq!(
-                filter.window.is_drafted_for(filter.turn_hypotheses.present_turn()),
+                filter.window.drafted_for(filter.turn_hypotheses.present_turn()).is_some(),
                 frame == 3,
                 "frame {frame}"
             );

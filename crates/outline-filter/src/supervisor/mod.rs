@@ -1,6 +1,7 @@
 //! The motion filter: phases, restarts, hypotheses and changes of the motion. The only state machine.
 mod acquisition;
 mod ambiguity;
+mod between_frames;
 mod candidate;
 mod clock;
 mod counts;
@@ -21,6 +22,7 @@ mod state_bytes;
 mod stated;
 mod statement;
 mod symmetry_angle;
+mod taken_ahead;
 mod tracking;
 mod turn_hypotheses;
 mod turn_hypothesis;

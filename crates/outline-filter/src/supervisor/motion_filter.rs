@@ -5,6 +5,7 @@ use freeform_estimate::TimeNotIncreasing;
 use nalgebra::{Point2, Projective2};
 
 use super::{
+    between_frames::BetweenFrames,
     clock::Clock,
     counts::Counts,
     error::FilterError,
@@ -114,6 +115,8 @@ pub struct MotionFilter {
     /// Straight edges that are not of the object.
     pub(super) edges: StandingEdges,
     #[cfg_attr(feature = "serde", serde(skip))]
+    pub(super) between_frames: BetweenFrames,
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) frame: Frame,
     /// What is stated after the last step, once it has been asked for.
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -141,6 +144,7 @@ impl MotionFilter {
             repeated: RepeatedFrames::default(),
             before_repeated: None,
             edges: StandingEdges::default(),
+            between_frames: BetweenFrames::default(),
             frame: Frame::default(),
             stated: OnceLock::new(),
         })
@@ -152,6 +156,8 @@ impl MotionFilter {
     /// A time that is not finite or not after the last one; a first outline with fewer than 8 points. The filter is then unchanged.
     pub fn step(&mut self, time: f64, outline: &Outline) -> Result<FilterStep, FilterError> {
         TimeNotIncreasing::check(self.clock.last_frame * self.seconds_per_unit(), time)?;
+        self.do_what_is_due();
+        self.between_frames.begin_frame();
         self.stated.take();
         self.choose_time_unit(time);
         let (seconds, time) = (time, time / self.seconds_per_unit());
@@ -180,6 +186,7 @@ impl MotionFilter {
     /// Processes a frame after the first, at a time in units of time: it is followed where the object is tracked, else looked for; what is taken is kept
     /// for remapping, and after frames that are not taken the filter may fall back on others.
     pub(super) fn process(&mut self, time: f64, outline: &Outline) -> (Option<FrameMeasurement>, Option<Rejection>) {
+        self.do_what_is_due();
         self.measure_before_next();
         self.clock.last_frame = time;
         let was_changing = self.history.is_changing();

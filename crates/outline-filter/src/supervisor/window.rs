@@ -1,9 +1,9 @@
 use freeform_curve_fit::Outline;
 use nalgebra::{Matrix3, Point2};
 
-use super::motion_change::MotionHistory;
 #[cfg(feature = "serde")]
 use super::settings::FilterSettings;
+use super::{motion_change::MotionHistory, taken_ahead::TakenAhead};
 #[cfg(feature = "serde")]
 use crate::track::SavedCells;
 use crate::{
@@ -34,6 +34,26 @@ pub(super) enum Remapping {
     Measured(Box<Measured>),
     /// To be cut again, after so many cuts.
     Again { cuts: usize },
+    /// A stage that is due before the next frame is looked at. It is made before the state is saved.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    Due(Due),
+}
+
+/// What is to be done to the frames kept, without the one that comes next.
+#[derive(Debug, Clone)]
+pub(super) enum Due {
+    /// Their points are to be put in order, for the hypothesis of a turn, after so many cuts.
+    Placing { turn: f64, cuts: usize },
+    /// Cells are to be cut along their points.
+    Cutting(Box<Placed>),
+}
+
+/// How far the frames kept have been taken on cells cut anew, between two frames.
+#[derive(Debug, Clone)]
+pub(super) enum Ahead {
+    Taking(Box<Remapped>),
+    /// All of them have been; `None` where the track that did so is none to be exchanged for.
+    Taken(Option<Box<Remapped>>),
 }
 
 /// Points of the frames kept in the body frame, in their order along each piece of the outline, and whether that is closed.
@@ -119,6 +139,12 @@ pub(super) struct InitialisationWindow {
     points: usize,
     state: Window,
     remapping: Remapping,
+    /// Of a map that has been cut, for the next frame alone.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    ahead: Option<Ahead>,
+    /// Where there are rivals.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    taken_ahead: TakenAhead,
 }
 
 impl InitialisationWindow {
@@ -130,6 +156,8 @@ impl InitialisationWindow {
             points: outline.point_count(),
             state: Window::Open,
             remapping: Remapping::Idle,
+            ahead: None,
+            taken_ahead: TakenAhead::default(),
         };
         frames.end_unless_few(track.cell_count());
         frames
@@ -185,9 +213,48 @@ impl InitialisationWindow {
         self.frames.len() > 1
     }
 
-    /// Whether the map has been cut anew for a hypothesis of the turn, and not been measured yet.
-    pub(super) fn is_drafted_for(&self, turn: f64) -> bool {
-        matches!(&self.remapping, Remapping::Drafted(draft) if draft.turn == turn)
+    /// A map that has been cut for a hypothesis of the turn, and has not been measured yet.
+    pub(super) fn drafted_for(&self, turn: f64) -> Option<&Draft> {
+        match &self.remapping {
+            Remapping::Drafted(draft) if draft.turn == turn => Some(draft),
+            _ => None,
+        }
+    }
+
+    /// Hypotheses that are measured on a map cut anew for one of the turn.
+    pub(super) fn measured_for(&self, turn: f64) -> Option<&Measured> {
+        match &self.remapping {
+            Remapping::Measured(measured) if measured.begun.turn == turn => Some(measured),
+            _ => None,
+        }
+    }
+
+    /// What becomes of these with further frames, as far as is known.
+    pub(super) fn taken_ahead(&self) -> &TakenAhead {
+        &self.taken_ahead
+    }
+
+    pub(super) fn taken_ahead_mut(&mut self) -> &mut TakenAhead {
+        &mut self.taken_ahead
+    }
+
+    /// Whether a stage of cutting the map anew is due before the next frame.
+    pub(super) fn is_due(&self) -> bool {
+        matches!(self.remapping, Remapping::Due(_))
+    }
+
+    /// How far the frames kept have been taken on the new cells, as far as is known.
+    pub(super) fn ahead(&self) -> Option<&Ahead> {
+        self.ahead.as_ref()
+    }
+
+    /// As [`ahead`](Self::ahead), which is forgotten.
+    pub(super) fn take_ahead(&mut self) -> Option<Ahead> {
+        self.ahead.take()
+    }
+
+    pub(super) fn set_ahead(&mut self, ahead: Ahead) {
+        self.ahead = Some(ahead);
     }
 
     /// What is being done to cut the map anew, which is then nothing.
@@ -259,6 +326,8 @@ impl InitialisationWindow {
                     && all.all(|remapped| remapped.restore(settings, kept, of_measured))
             }
             Remapping::Again { cuts } => *cuts <= tuning::MOST_CUTS,
+            // None is read.
+            Remapping::Due(_) => false,
         };
         is_usable && self.is_valid()
     }

@@ -1,5 +1,6 @@
 //! One program for all of them, since each costs a link and its share of compiling.
 mod all_but_round;
+mod between_frames;
 mod comes_into_view;
 mod dependent_errors;
 mod doubtful_starts;

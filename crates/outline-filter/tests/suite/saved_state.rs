@@ -1,5 +1,5 @@
 //! A filter saved and restored goes on as before to the last bit, and no bytes make a filter that cannot be worked with.
-use crate::filter_support::{filtered, frames_of, settings};
+use crate::filter_support::{filtered, frames_of, settings, told};
 use freeform_curve_fit::Outline;
 use freeform_outline_filter::{Dynamics, FilterSettings, MotionFilter, StateError, state_format};
 use freeform_riccati::{AffineMotion, MotionModel, RigidMotion};
@@ -12,15 +12,6 @@ const MOTION: RigidMotion = RigidMotion { omega: 1.5, b1: -0.3, b2: 0.4 };
 
 fn saved_and_restored(filter: &MotionFilter) -> MotionFilter {
     MotionFilter::from_bytes(&filter.to_bytes().expect("memory takes it")).expect("a saved state")
-}
-
-/// What a filter says of a frame and of itself.
-fn told(filter: &mut MotionFilter, frame: &Frame) -> String {
-    let step = filter.step(frame.time, &frame.outline);
-    // Debug text of a number is exact.
-    let motion = (filter.estimate(), filter.state(), filter.velocity(), filter.pose());
-    let doubts = (filter.ambiguity(), filter.aliases(), filter.dynamics(), filter.wrong_family(), filter.unstated());
-    format!("{step:?} {motion:?} {doubts:?}")
 }
 
 /// Saves and restores at some of the frames; everything must be as without.

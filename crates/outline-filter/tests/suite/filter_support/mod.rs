@@ -29,6 +29,20 @@ pub(crate) fn filtered(model: MotionModel, frames: &[Frame]) -> MotionFilter {
     filter
 }
 
+/// What a filter says of a frame and of itself.
+pub(crate) fn told(filter: &mut MotionFilter, frame: &Frame) -> String {
+    let step = filter.step(frame.time, &frame.outline);
+    format!("{step:?} {}", stated(filter))
+}
+
+/// What a filter says of itself.
+pub(crate) fn stated(filter: &MotionFilter) -> String {
+    // Debug text of a number is exact.
+    let motion = (filter.estimate(), filter.state(), filter.velocity(), filter.pose());
+    let doubts = (filter.ambiguity(), filter.aliases(), filter.dynamics(), filter.wrong_family(), filter.unstated());
+    format!("{motion:?} {doubts:?}")
+}
+
 /// Points of a [`bent_outline`].
 pub(crate) const BENT_POINTS: u16 = 300;
 
