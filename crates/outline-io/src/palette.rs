@@ -50,7 +50,8 @@ mod tests {
 
     fn file_with(exif: Option<&[u8]>, colour: ColorType, depth: BitDepth, size: [u32; 2], bytes: &[u8]) -> Vec<u8> {
         let [width, height] = size;
-        let mut info = Info { color_type: colour, bit_depth: depth, ..Info::with_size(width, height) };
+        let mut info = Info::with_size(width, height);
+        (info.color_type, info.bit_depth) = (colour, depth);
         info.exif_metadata = exif.map(Into::into);
         if colour == ColorType::Indexed {
             // The last two places have one colour.
