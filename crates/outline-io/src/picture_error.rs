@@ -151,7 +151,7 @@ pub enum PictureErrorKind {
     CutShort,
     /// A picture that is whole, of a kind that its format allows but that is not read here, such as a CMYK TIFF with a plane for
     /// each ink.
-    #[error("a picture of this kind is not read here: {0}")]
+    #[error("a picture of this kind is not read here, save it as PNG: {0}")]
     UnsupportedKind(#[source] ImageError),
     /// A TIFF whose grey values have another number of bits than those that are read.
     #[error(
