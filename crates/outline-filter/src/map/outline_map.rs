@@ -158,10 +158,24 @@ impl ContourNoise {
     }
 }
 
+/// Which frames show all cells of a map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum CellsSeen {
+    /// Those that it is cut from, where a constant motion relates them.
+    ByFramesTogether,
+    /// Each of them, where they tell how the motion changes: a pose that shares few cells with those before is where it was expected.
+    ByEachFrame,
+}
+
 impl Resolution {
     /// For contours, and the deviation of their noise, which is no less than `least_noise`; `points` of one frame will be measured on the
     /// cells, whose normals have directions with deviations of no more than `normal_noise`, in rad.
-    pub(crate) fn of(contours: &mut ContourNoise, least_noise: f64, points: usize, normal_noise: f64) -> (Self, f64) {
+    pub(crate) fn of(
+        contours: &mut ContourNoise,
+        least_noise: f64,
+        (points, seen): (usize, CellsSeen),
+        normal_noise: f64,
+    ) -> (Self, f64) {
         let (mut variance, mut count, mut length, mut window) = (0.0, 0.0, 0.0, 2);
         for (contour, noise) in &mut contours.0 {
             let Some(noise) = *noise else { continue };
@@ -173,7 +187,11 @@ impl Resolution {
         }
         // Exact points have no noise; the floor keeps weights finite and is far below what any number can tell.
         let sigma = (variance / f64::max(count, 1.0)).sqrt().max(crate::tuning::noise::SMALLEST);
-        let finest = (count / tuning::POINTS_PER_CELL).clamp(tuning::FEWEST_OF_FINEST, tuning::MOST_CELLS);
+        let seen = match seen {
+            CellsSeen::ByFramesTogether => count,
+            CellsSeen::ByEachFrame => count.min(points as f64),
+        };
+        let finest = (seen / tuning::POINTS_PER_CELL).clamp(tuning::FEWEST_OF_FINEST, tuning::MOST_CELLS);
         let plenty = (tuning::LEAST_NOISE_PER_CELL * sigma).max(tuning::PLENTY_PER_CELL * length / points as f64);
         let spacing =
             plenty.min(tuning::NOISE_PER_CELL * sigma).max(length / finest).min(length / tuning::CELLS_PER_LENGTH);

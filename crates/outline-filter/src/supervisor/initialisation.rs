@@ -11,7 +11,7 @@ use super::{
     window::{Ahead, Draft, Due, InitialisationWindow, Measured, Placed, Remapped, Remapping},
 };
 use crate::{
-    map::{TurnEvent, TurnEvidence},
+    map::{CellsSeen, TurnEvent, TurnEvidence},
     measurement::Frame,
     search::Landmarks,
     track::{PlacedFrame, Track},
@@ -88,9 +88,10 @@ impl MotionFilter {
 
     /// Cuts the map anew along points in order.
     pub(super) fn cut(&mut self, Placed { runs, turn, cuts }: Placed) -> Remapping {
-        let first = self.window.first();
-        let cut =
-            self.track.as_ref().zip(first).and_then(|(track, first)| track.recut_along(runs, first, &mut self.frame));
+        let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns_of_kept() };
+        let seen = remapper.cells_seen(&self.history);
+        let placed = self.track.as_ref().zip(self.window.first());
+        let cut = placed.and_then(|(track, first)| track.recut_along(runs, first, seen, &mut self.frame));
         cut.map_or(Remapping::Idle, |track| Remapping::Drafted(Box::new(Draft { track, turn, cuts: cuts + 1 })))
     }
 
@@ -228,12 +229,17 @@ impl Remapper<'_> {
         history.is_changing() || !self.settings.process_noise.is_none()
     }
 
+    /// Which frames are to show the cells that are cut from them.
+    fn cells_seen(&self, history: &MotionHistory) -> CellsSeen {
+        if self.may_change(history) { CellsSeen::ByEachFrame } else { CellsSeen::ByFramesTogether }
+    }
+
     /// A rival of a track that was begun anew, at the first frame on the same cells: each of its own would be as many times the work, and a finer
     /// one would win by that alone. Where they have not begun alike it has cells of its own all the same.
     fn on_map_of(&self, begun: &Track, rival: &Track, buffers: &mut Frame) -> Option<Remapped> {
         let frames = self.placed(rival, false);
         let begun = begun.with_motion_of(rival).or_else(|| {
-            let mut begun = rival.recut(&frames, 1, buffers)?;
+            let mut begun = rival.recut(&frames, (1, CellsSeen::ByFramesTogether), buffers)?;
             begun.begin_as(rival, frames.first()?.outline, buffers);
             Some(begun)
         })?;

@@ -11,7 +11,7 @@ use super::{
 use crate::{
     belief::Belief,
     dynamics::FamilyTests,
-    map::{Contour, ContourNoise, OutlineMap, Resolution},
+    map::{CellsSeen, Contour, ContourNoise, OutlineMap, Resolution},
     measurement::{Counted, Frame, NoiseModel, Reference, Rounding},
     prediction::ShapeNoise,
     tuning::{
@@ -33,7 +33,8 @@ impl Track {
         rounding: Rounding,
         frame: &mut Frame,
     ) -> Option<Self> {
-        let mut track = Self::draft((model, reference), pose, contours, rounding.of_point(), frame)?;
+        let least_noise = rounding.of_point();
+        let mut track = Self::draft((model, reference), pose, contours, (least_noise, CellsSeen::ByEachFrame), frame)?;
         track.measure_draft(rounding, frame);
         Some(track)
     }
@@ -43,12 +44,12 @@ impl Track {
         of: (MotionModel, Reference),
         pose: Matrix3<f64>,
         contours: Vec<Contour>,
-        least_noise: f64,
+        (least_noise, seen): (f64, CellsSeen),
         frame: &Frame,
     ) -> Option<Self> {
         let mut noise = ContourNoise::of(&contours);
         let mut draft = |mut contours: Vec<Contour>, normal_noise| {
-            let (resolution, sigma) = Resolution::of(&mut noise, least_noise, frame.points.len(), normal_noise);
+            let (resolution, sigma) = Resolution::of(&mut noise, least_noise, (frame.points.len(), seen), normal_noise);
             noise.hand_on_regressions(&mut contours);
             Self::drafted(of, pose, contours, (resolution, sigma), frame)
         };

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Point2};
 use super::Track;
 use crate::{
     belief::EarlierPoses,
-    map::{CellPoint, Contour, has_common_places},
+    map::{CellPoint, CellsSeen, Contour, has_common_places},
     measurement::{Frame, Pass},
     tuning::remapping as tuning,
 };
@@ -46,16 +46,21 @@ impl Track {
         buffers: &mut Frame,
         take: impl FnMut(&mut Self, &mut Frame, f64, &Outline) -> bool,
     ) -> Option<Self> {
-        let mut track = self.recut(frames, stride, buffers)?;
+        let mut track = self.recut(frames, (stride, CellsSeen::ByFramesTogether), buffers)?;
         track.begin_as(self, frames.first()?.outline, buffers);
         track.replayed(frames, buffers, take)
     }
 
     /// A track of the same body frame with cells cut from every frame out of `stride`, which are those that this one has taken; it is to be
     /// [begun](Self::begin_as) with the first of them yet. `None` where the new cells do not show the turn.
-    pub(crate) fn recut(&self, frames: &[PlacedFrame<'_>], stride: usize, buffers: &mut Frame) -> Option<Self> {
+    pub(crate) fn recut(
+        &self,
+        frames: &[PlacedFrame<'_>],
+        (stride, seen): (usize, CellsSeen),
+        buffers: &mut Frame,
+    ) -> Option<Self> {
         let runs = self.points_along(frames, stride, buffers)?;
-        self.recut_along(runs, frames.first()?.outline, buffers)
+        self.recut_along(runs, frames.first()?.outline, seen, buffers)
     }
 
     /// The points of every frame out of `stride` in their order along the outline, in the body frame, and whether it is closed, of each of its
@@ -86,13 +91,14 @@ impl Track {
         &self,
         runs: Vec<(Vec<Point2<f64>>, bool)>,
         first: &Outline,
+        seen: CellsSeen,
         buffers: &mut Frame,
     ) -> Option<Self> {
         let contours = runs.into_iter().map(|(run, closed)| Contour::new(run, closed));
         buffers.load(first, self.reference);
         let least_noise = (tuning::LEAST_NOISE * self.noise.sigma).max(self.noise.rounding().of_point());
         let of = (self.belief.model, self.reference);
-        let track = Self::draft(of, self.first_pose.pose, contours.collect(), least_noise, buffers)?;
+        let track = Self::draft(of, self.first_pose.pose, contours.collect(), (least_noise, seen), buffers)?;
         // Through points that do not lie on one line, as where the frames do not show the same, a contour runs to and fro.
         let is_longer = track.map.length() > tuning::LONGEST * self.map.length();
         if track.turn_is_unseen() || is_longer && self.map.cells().len() >= tuning::CELLS_OF_LENGTH {
