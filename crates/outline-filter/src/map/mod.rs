@@ -28,5 +28,5 @@ pub(crate) use contour::Contour;
 pub(crate) use medians::{median, median_about};
 pub(crate) use null_directions::{NullDirection, NullDirections};
 pub(crate) use null_space::{CLOCKWISE, map_between};
-pub(crate) use outline_map::{Cell, CellsSeen, ContourNoise, OutlineMap, Resolution};
+pub(crate) use outline_map::{Cell, CellsInCommon, ContourNoise, OutlineMap, Resolution};
 pub(crate) use turn_evidence::{TurnEvent, TurnEvidence};

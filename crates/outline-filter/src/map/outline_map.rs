@@ -158,13 +158,13 @@ impl ContourNoise {
     }
 }
 
-/// Which frames show all cells of a map.
+/// Whether the frames that a map is cut from must have cells in common.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum CellsSeen {
-    /// Those that it is cut from, where a constant motion relates them.
-    ByFramesTogether,
-    /// Each of them, where they tell how the motion changes: a pose that shares few cells with those before is where it was expected.
-    ByEachFrame,
+pub(crate) enum CellsInCommon {
+    /// Not where there is one alone, or a constant motion relates them: each may show cells of its own.
+    NotNeeded,
+    /// They tell how the motion changes: a pose that has no cells in common with those before is where it was expected.
+    Needed,
 }
 
 impl Resolution {
@@ -173,7 +173,7 @@ impl Resolution {
     pub(crate) fn of(
         contours: &mut ContourNoise,
         least_noise: f64,
-        (points, seen): (usize, CellsSeen),
+        (points, in_common): (usize, CellsInCommon),
         normal_noise: f64,
     ) -> (Self, f64) {
         let (mut variance, mut count, mut length, mut window) = (0.0, 0.0, 0.0, 2);
@@ -187,11 +187,11 @@ impl Resolution {
         }
         // Exact points have no noise; the floor keeps weights finite and is far below what any number can tell.
         let sigma = (variance / f64::max(count, 1.0)).sqrt().max(crate::tuning::noise::SMALLEST);
-        let seen = match seen {
-            CellsSeen::ByFramesTogether => count,
-            CellsSeen::ByEachFrame => count.min(points as f64),
+        let points_per_cell = match in_common {
+            CellsInCommon::NotNeeded => tuning::POINTS_PER_CELL,
+            CellsInCommon::Needed => tuning::POINTS_PER_COMMON_CELL,
         };
-        let finest = (seen / tuning::POINTS_PER_CELL).clamp(tuning::FEWEST_OF_FINEST, tuning::MOST_CELLS);
+        let finest = (count / points_per_cell).clamp(tuning::FEWEST_OF_FINEST, tuning::MOST_CELLS);
         let plenty = (tuning::LEAST_NOISE_PER_CELL * sigma).max(tuning::PLENTY_PER_CELL * length / points as f64);
         let spacing =
             plenty.min(tuning::NOISE_PER_CELL * sigma).max(length / finest).min(length / tuning::CELLS_PER_LENGTH);

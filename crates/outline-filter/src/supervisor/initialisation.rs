@@ -11,7 +11,7 @@ use super::{
     window::{Ahead, Draft, Due, InitialisationWindow, Measured, Placed, Remapped, Remapping},
 };
 use crate::{
-    map::{CellsSeen, TurnEvent, TurnEvidence},
+    map::{CellsInCommon, TurnEvent, TurnEvidence},
     measurement::Frame,
     search::Landmarks,
     track::{PlacedFrame, Track},
@@ -89,9 +89,9 @@ impl MotionFilter {
     /// Cuts the map anew along points in order.
     pub(super) fn cut(&mut self, Placed { runs, turn, cuts }: Placed) -> Remapping {
         let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns_of_kept() };
-        let seen = remapper.cells_seen(&self.history);
+        let in_common = remapper.cells_in_common(&self.history);
         let placed = self.track.as_ref().zip(self.window.first());
-        let cut = placed.and_then(|(track, first)| track.recut_along(runs, first, seen, &mut self.frame));
+        let cut = placed.and_then(|(track, first)| track.recut_along(runs, first, in_common, &mut self.frame));
         cut.map_or(Remapping::Idle, |track| Remapping::Drafted(Box::new(Draft { track, turn, cuts: cuts + 1 })))
     }
 
@@ -229,9 +229,9 @@ impl Remapper<'_> {
         history.is_changing() || !self.settings.process_noise.is_none()
     }
 
-    /// Which frames are to show the cells that are cut from them.
-    fn cells_seen(&self, history: &MotionHistory) -> CellsSeen {
-        if self.may_change(history) { CellsSeen::ByEachFrame } else { CellsSeen::ByFramesTogether }
+    /// Whether frames must have cells in common that are cut from them.
+    fn cells_in_common(&self, history: &MotionHistory) -> CellsInCommon {
+        if self.may_change(history) { CellsInCommon::Needed } else { CellsInCommon::NotNeeded }
     }
 
     /// A rival of a track that was begun anew, at the first frame on the same cells: each of its own would be as many times the work, and a finer
@@ -239,7 +239,7 @@ impl Remapper<'_> {
     fn on_map_of(&self, begun: &Track, rival: &Track, buffers: &mut Frame) -> Option<Remapped> {
         let frames = self.placed(rival, false);
         let begun = begun.with_motion_of(rival).or_else(|| {
-            let mut begun = rival.recut(&frames, (1, CellsSeen::ByFramesTogether), buffers)?;
+            let mut begun = rival.recut(&frames, (1, CellsInCommon::NotNeeded), buffers)?;
             begun.begin_as(rival, frames.first()?.outline, buffers);
             Some(begun)
         })?;

@@ -11,7 +11,7 @@ use super::{
 use crate::{
     belief::Belief,
     dynamics::FamilyTests,
-    map::{CellsSeen, Contour, ContourNoise, OutlineMap, Resolution},
+    map::{CellsInCommon, Contour, ContourNoise, OutlineMap, Resolution},
     measurement::{Counted, Frame, NoiseModel, Reference, Rounding},
     prediction::ShapeNoise,
     tuning::{
@@ -34,7 +34,8 @@ impl Track {
         frame: &mut Frame,
     ) -> Option<Self> {
         let least_noise = rounding.of_point();
-        let mut track = Self::draft((model, reference), pose, contours, (least_noise, CellsSeen::ByEachFrame), frame)?;
+        let mut track =
+            Self::draft((model, reference), pose, contours, (least_noise, CellsInCommon::NotNeeded), frame)?;
         track.measure_draft(rounding, frame);
         Some(track)
     }
@@ -44,12 +45,13 @@ impl Track {
         of: (MotionModel, Reference),
         pose: Matrix3<f64>,
         contours: Vec<Contour>,
-        (least_noise, seen): (f64, CellsSeen),
+        (least_noise, in_common): (f64, CellsInCommon),
         frame: &Frame,
     ) -> Option<Self> {
         let mut noise = ContourNoise::of(&contours);
         let mut draft = |mut contours: Vec<Contour>, normal_noise| {
-            let (resolution, sigma) = Resolution::of(&mut noise, least_noise, (frame.points.len(), seen), normal_noise);
+            let (resolution, sigma) =
+                Resolution::of(&mut noise, least_noise, (frame.points.len(), in_common), normal_noise);
             noise.hand_on_regressions(&mut contours);
             Self::drafted(of, pose, contours, (resolution, sigma), frame)
         };

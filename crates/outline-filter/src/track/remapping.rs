@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Point2};
 use super::Track;
 use crate::{
     belief::EarlierPoses,
-    map::{CellPoint, CellsSeen, Contour, has_common_places},
+    map::{CellPoint, CellsInCommon, Contour, has_common_places},
     measurement::{Frame, Pass},
     tuning::remapping as tuning,
 };
@@ -46,7 +46,7 @@ impl Track {
         buffers: &mut Frame,
         take: impl FnMut(&mut Self, &mut Frame, f64, &Outline) -> bool,
     ) -> Option<Self> {
-        let mut track = self.recut(frames, (stride, CellsSeen::ByFramesTogether), buffers)?;
+        let mut track = self.recut(frames, (stride, CellsInCommon::NotNeeded), buffers)?;
         track.begin_as(self, frames.first()?.outline, buffers);
         track.replayed(frames, buffers, take)
     }
@@ -56,11 +56,11 @@ impl Track {
     pub(crate) fn recut(
         &self,
         frames: &[PlacedFrame<'_>],
-        (stride, seen): (usize, CellsSeen),
+        (stride, in_common): (usize, CellsInCommon),
         buffers: &mut Frame,
     ) -> Option<Self> {
         let runs = self.points_along(frames, stride, buffers)?;
-        self.recut_along(runs, frames.first()?.outline, seen, buffers)
+        self.recut_along(runs, frames.first()?.outline, in_common, buffers)
     }
 
     /// The points of every frame out of `stride` in their order along the outline, in the body frame, and whether it is closed, of each of its
@@ -91,14 +91,14 @@ impl Track {
         &self,
         runs: Vec<(Vec<Point2<f64>>, bool)>,
         first: &Outline,
-        seen: CellsSeen,
+        in_common: CellsInCommon,
         buffers: &mut Frame,
     ) -> Option<Self> {
         let contours = runs.into_iter().map(|(run, closed)| Contour::new(run, closed));
         buffers.load(first, self.reference);
         let least_noise = (tuning::LEAST_NOISE * self.noise.sigma).max(self.noise.rounding().of_point());
         let of = (self.belief.model, self.reference);
-        let track = Self::draft(of, self.first_pose.pose, contours.collect(), (least_noise, seen), buffers)?;
+        let track = Self::draft(of, self.first_pose.pose, contours.collect(), (least_noise, in_common), buffers)?;
         // Through points that do not lie on one line, as where the frames do not show the same, a contour runs to and fro.
         let is_longer = track.map.length() > tuning::LONGEST * self.map.length();
         if track.turn_is_unseen() || is_longer && self.map.cells().len() >= tuning::CELLS_OF_LENGTH {
