@@ -3,14 +3,23 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use freeform_estimate::MotionState;
 
+/// Steps of the usual length in which an object may go unseen without whole turns being in doubt: it turns by less than half a circle from frame to frame.
+const LONGEST_STEP: f64 = 1.5;
+
 /// The angle of the poses of an object, continuous over time. Of the whole turns that it may have made since the pose before, those are counted that its
-/// angular velocity has made, the mean of those at both poses; the fewest where neither is known.
+/// angular velocity has made, the mean of those known last before and first afterwards; the fewest where none is known.
 ///
-/// Where an object was not seen for long, and its angular velocity is not known well enough, or was another one before than it is afterwards, whole turns may have
-/// been missed. The standard deviation of all angles from then on has what that may be.
+/// Where an object was not seen for long, and its angular velocity is not known well enough, is not known yet, or was another one before than it is
+/// afterwards, whole turns may have been missed. The standard deviation of all angles from then on has what that may be.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ContinuousAngle {
     last: Option<LastPose>,
+    /// The shortest step between poses, s.
+    step: Option<f64>,
+    /// The last angular velocity that was known.
+    omega: Option<Omega>,
+    /// Time for which poses were missing, s, after which none has been known yet.
+    open: f64,
     /// Of whole turns that may have been missed, rad.
     deviation: f64,
 }
@@ -20,7 +29,6 @@ struct LastPose {
     /// In seconds.
     time: f64,
     angle: f64,
-    omega: Option<Omega>,
 }
 
 /// An angular velocity and its standard deviation, rad/s.
@@ -36,6 +44,11 @@ impl Omega {
         let omega = motion.parameters().find(|parameter| parameter.name == "omega")?;
         Some(Self { value: omega.value?, deviation: omega.standard_deviation? })
     }
+
+    /// How far an object may have turned in so many seconds beside the mean of this one and another that it had before, rad.
+    fn spread(self, before: Self, seconds: f64) -> f64 {
+        (0.5 * (self.value - before.value)).hypot(self.deviation.max(before.deviation)) * seconds
+    }
 }
 
 impl ContinuousAngle {
@@ -49,21 +62,37 @@ impl ContinuousAngle {
         let mut expected = 0.0;
         if let Some(last) = self.last {
             let seconds = time - last.time;
-            let known = last.omega.or(omega).zip(omega.or(last.omega));
-            let (turn, spread) = known.map_or((0.0, 0.0), |(before, now)| {
-                let apart = 0.5 * (now.value - before.value);
-                (0.5 * (before.value + now.value), apart.hypot(before.deviation.max(now.deviation)))
-            });
-            expected = last.angle + turn * seconds;
-            let spread = spread * seconds;
-            // Two deviations of it reach half a turn, from where on another whole turn is nearer.
-            if spread > FRAC_PI_2 {
-                self.deviation = self.deviation.hypot(spread);
+            let step = self.step.map_or(seconds, |step| step.min(seconds));
+            self.step = Some(step);
+            let known = [self.omega, omega].into_iter().flatten();
+            let (sum, count) = known.fold((0.0, 0.0), |(sum, count), omega| (sum + omega.value, count + 1.0));
+            expected = last.angle + sum / f64::max(count, 1.0) * seconds;
+            if seconds > LONGEST_STEP * step {
+                self.open += seconds;
             }
         }
+        let missed = self.missed(omega);
+        if omega.is_some() {
+            self.deviation = self.deviation.hypot(missed);
+            self.open = 0.0;
+        }
+        self.omega = omega.or(self.omega);
         let angle = angle + TAU * ((expected - angle) / TAU).round();
-        self.last = Some(LastPose { time, angle, omega });
-        (angle, self.deviation)
+        self.last = Some(LastPose { time, angle });
+        (angle, if omega.is_some() { self.deviation } else { self.deviation.hypot(missed) })
+    }
+
+    /// Standard deviation of the whole turns that may have been missed where poses were missing, by the angular velocity afterwards.
+    fn missed(&self, omega: Option<Omega>) -> f64 {
+        let spread = match (self.omega, omega) {
+            _ if self.open == 0.0 => 0.0,
+            (Some(before), Some(now)) => now.spread(before, self.open),
+            // It may have stopped, or be twice as fast.
+            (Some(before), None) => before.value.hypot(before.deviation) * self.open,
+            (None, _) => TAU,
+        };
+        // Two deviations of it reach half a turn, from where on another whole turn is nearer.
+        if spread > FRAC_PI_2 { spread } else { 0.0 }
     }
 }
 
@@ -77,9 +106,10 @@ mod tests {
 
     use super::*;
 
+    /// One of which the angular velocity is not known where it is no number.
     fn state(time: f64, omega: f64, deviation: f64) -> MotionState {
         let mut motion = [0.0; MAX_PARAMETERS];
-        motion[0] = omega;
+        motion[0] = if omega.is_finite() { omega } else { 0.0 };
         let covariance = DMatrix::identity(6, 6) * (deviation * deviation);
         NormalisedState {
             model: MotionModel::Rigid,
@@ -91,7 +121,7 @@ mod tests {
             covariance: covariance.clone(),
             body_frame: DMatrix::zeros(3, 3),
             covariance_given_outline: covariance,
-            observable: [true; MAX_PARAMETERS],
+            observable: [omega.is_finite(); MAX_PARAMETERS],
             hidden: [false; MAX_PARAMETERS],
             centroid: Point2::origin(),
         }
@@ -119,11 +149,19 @@ mod tests {
 
     #[test]
     fn where_whole_turns_may_have_been_missed_all_angles_from_then_on_say_so() {
+        let before = [(-0.2, -0.8, 4.0), (-0.1, -0.4, 4.0), (0.0, 0.0, 4.0)];
+        let after = |poses: &[(f64, f64, f64)], deviation: f64| last(&[&before, poses].concat(), deviation);
         // It was faster before by 3 rad/s, for two seconds: what it has made of them nobody knows.
-        let (angle, deviation) = last(&[(0.0, 0.0, 4.0), (2.0, 5.0, 1.0), (2.1, 5.1, 1.0)], 0.01);
+        let (angle, deviation) = after(&[(2.0, 5.0, 1.0), (2.1, 5.1, 1.0)], 0.01);
         assert!((angle - 5.1).abs() < 1e-9 && (deviation - 3.0).abs() < 0.01, "{angle} {deviation}");
-        let (_, unknown) = last(&[(0.0, 0.0, 4.0), (3.0, 12.0, 4.0)], 1.0);
+        let (_, unknown) = after(&[(3.0, 12.0, 4.0)], 1.0);
         assert!((unknown - 3.0).abs() < 1e-9, "{unknown}");
+        // Not known yet: it may have stopped. Once it is known, that tells.
+        let not_yet = [(0.5, 2.0, f64::NAN), (0.6, 2.4, f64::NAN)];
+        assert!((after(&not_yet, 0.01).1 - 2.0).abs() < 0.01);
+        assert_eq!(after(&[&not_yet[..], &[(0.7, 2.8, 4.0)]].concat(), 0.01).1, 0.0);
+        let (_, other) = after(&[&not_yet[..], &[(0.7, 2.2, -9.0), (0.8, 1.3, -9.0)]].concat(), 0.01);
+        assert!((other - 3.25).abs() < 0.01, "{other}");
     }
 
     #[test]

@@ -241,6 +241,12 @@ impl Input {
         warnings
     }
 
+    /// As that, with what only many outlines together tell, which takes a while to be looked for: after all have been read.
+    pub(crate) fn closing_warnings(&self) -> Vec<(OriginWarning, String)> {
+        let of_aspect = self.pictures().and_then(PictureInput::warning_of_aspect);
+        self.origin_warnings().into_iter().chain(of_aspect).collect()
+    }
+
     /// What a table has said so far of how its outlines were found.
     pub(crate) fn told_by_table(&self) -> OriginWarnings {
         match &self.source {

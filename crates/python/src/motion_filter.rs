@@ -158,16 +158,8 @@ impl PyMotionFilter {
         Ok(PyFilterStep { inner })
     }
 
-    /// Does a part of the work that waits for the next frame, while nothing else is to be done.
-    ///
-    /// After some of the first frames, and where the motion seems to change, the map of the outline is cut anew, and frames seen before are
-    /// measured on it: those steps take several times as long as others. A loop that calls this between frames, as long as it has time and more
-    /// is waiting, does not wait for that in `step`. Results are the same to the last bit whether, when and how often it is called.
-    ///
-    /// Returns
-    /// -------
-    /// bool
-    ///     Whether more is waiting.
+    /// Does a part of the work that waits for the next frame; whether more is waiting. Called between frames it makes the longest steps shorter; results
+    /// are the same to the last bit.
     fn prepare(&self, py: Python<'_>) -> bool {
         py.detach(|| self.lock().prepare())
     }

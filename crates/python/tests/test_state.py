@@ -149,7 +149,7 @@ def test_bytes_that_are_no_identifier_are_refused(bird):
         (b"", r"0 byte\(s\) are no saved state"),
         (data[:200], "damaged"),
         (data + b"x", "damaged"),
-        (bytes([data[0] + 1]) + data[1:], "has the format version 3, this library reads version 2"),
+        (bytes([data[0] + 1]) + data[1:], "has the format version 2, this library reads version 1"),
         (ff.MotionFilter().to_bytes(), "this library reads version 1"),
     ]:
         with pytest.raises(ValueError, match=message):

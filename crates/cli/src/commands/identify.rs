@@ -179,7 +179,7 @@ impl<'a> Outcome<'a> {
         let Self { args, input, results, is_found, .. } = self;
         let mut listed = settings(&args.options, &input.name);
         listed.extend(input.pictures().map(PictureInput::listed).unwrap_or_default());
-        listed.extend(input.origin_warnings().into_iter().map(|(_, warning)| ("Warning", warning)));
+        listed.extend(input.closing_warnings().into_iter().map(|(_, warning)| ("Warning", warning)));
         listed.push(version());
         let reason = self.failure.as_ref().map(Failure::text);
         let all_poses = format!("--trajectory writes those of all {}.", results.len());
@@ -218,7 +218,7 @@ impl<'a> Outcome<'a> {
                 table.and_then(|()| if is_pointed_to { writeln!(sink, "{POSES_OVER_TIME}") } else { Ok(()) })
             }
             IdentifyFormat::Json => {
-                write_identify_json(&mut sink, results, b, &self.left_out, &self.input.origin_warnings())
+                write_identify_json(&mut sink, results, b, &self.left_out, &self.input.closing_warnings())
             }
             IdentifyFormat::Csv => write_results(&mut sink, results, b.short_unit),
         };

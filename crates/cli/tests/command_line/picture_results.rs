@@ -84,7 +84,7 @@ fn without_a_motion_files_hold_what_is_known_or_are_said_not_to_be_written() {
 }
 
 #[test]
-fn the_rounding_of_masks_to_pixels_is_part_of_the_deviations_unless_an_edge_uncertainty_is_given() {
+fn the_rounding_of_masks_to_pixels_is_part_of_the_deviations_and_is_found_in_tables_of_their_outlines() {
     let folder = tempfile::tempdir().expect("a folder");
     let (frames, base) = masks_of_pears(folder.path());
     let outlines = format!("{base}/outlines.csv");
@@ -97,10 +97,12 @@ fn the_rounding_of_masks_to_pixels_is_part_of_the_deviations_unless_an_edge_unce
     };
     let of_masks = omega(&format!("{frames} --fps 30"));
     assert_eq!(omega(&format!("{outlines} --mask-pixel 1")), of_masks);
-    // Nothing is known of outlines from elsewhere, and what is given is obeyed.
-    let of_outlines = omega(&outlines);
-    assert!(of_outlines[1] < of_masks[1], "{of_outlines:?} {of_masks:?}");
-    assert_eq!(omega(&format!("{frames} --fps 30 --edge-uncertainty 0")), of_outlines);
+    // Sides that lie half way between two pixels tell of it, also where nothing else is said of the outlines.
+    assert_eq!(omega(&outlines), of_masks);
+    assert_eq!(omega(&format!("{frames} --fps 30 --edge-uncertainty 0")), of_masks);
+    // What is given is obeyed.
+    let finer = omega(&format!("{outlines} --mask-pixel 0.25"));
+    assert!(finer[1] < of_masks[1], "{finer:?} {of_masks:?}");
 }
 
 #[test]

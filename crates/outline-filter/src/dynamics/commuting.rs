@@ -108,9 +108,10 @@ mod tests {
     use super::*;
     use crate::dynamics::{CentredPose, centred::CentredVector, course::PointOfBody};
 
-    const COURSES: [Course; 8] = [
+    const COURSES: [Course; 9] = [
         Course::ConstantGenerator,
         Course::ConstantVelocity { of: PointOfBody::NearCentroid },
+        Course::ConstantVelocity { of: PointOfBody::Any },
         Course::Shaken { deviations: 4.0 },
         Course::Accelerating { level: 1e-1, rates: true },
         Course::Accelerating { level: 1e1, rates: false },

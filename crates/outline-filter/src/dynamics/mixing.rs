@@ -257,6 +257,7 @@ mod tests {
         let courses = [
             Course::ConstantGenerator,
             Course::ConstantVelocity { of: PointOfBody::NearCentroid },
+            Course::ConstantVelocity { of: PointOfBody::Any },
             Course::Shaken { deviations: 4.0 },
             Course::Accelerating { level: 1e-1, rates: true },
             Course::Accelerating { level: 1e3, rates: false },
@@ -269,19 +270,19 @@ mod tests {
             mix(&mut hypotheses, &mut weights, MotionModel::Rigid, (&CentredVector::repeat(1e-4), 0.1), None);
             assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{weights:?}");
             assert!(weights.iter().all(|weight| *weight > 0.0), "{weights:?}");
-            if course != courses[2] {
+            let camera = 3;
+            if course != courses[camera] {
                 assert!(
-                    courses
-                        .iter()
-                        .zip(weights)
-                        .all(|(other, weight)| *other == course || *other == courses[2] || weight > 50.0 * weights[2]),
+                    courses.iter().zip(weights).all(|(other, weight)| *other == course
+                        || *other == courses[camera]
+                        || weight > 50.0 * weights[camera]),
                     "{weights:?}"
                 );
             }
             courses.iter().zip(weights).filter(|(other, _)| **other != course).map(|(_, weight)| weight).sum::<f64>()
         });
-        let [generator, velocity, shaken, middle, high] = left;
-        assert!(generator == velocity && middle == high, "{left:?}");
+        let [generator, velocity, of_any, shaken, middle, high] = left;
+        assert!(generator == velocity && velocity == of_any && middle == high, "{left:?}");
         assert!(generator > 0.0 && 50.0 * generator < middle.min(shaken), "{left:?}");
     }
 

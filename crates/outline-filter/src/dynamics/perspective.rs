@@ -202,9 +202,10 @@ mod tests {
 
     type State = nalgebra::SVector<f64, 24>;
 
-    const COURSES: [Course; 7] = [
+    const COURSES: [Course; 8] = [
         Course::ConstantGenerator,
         Course::ConstantVelocity { of: PointOfBody::NearCentroid },
+        Course::ConstantVelocity { of: PointOfBody::Any },
         Course::Accelerating { level: 1e-1, rates: true },
         Course::Accelerating { level: 1e1, rates: false },
         Course::ChangingGenerator { level: 1e1 },

@@ -60,7 +60,7 @@ impl FromStr for Dynamics {
 pub struct DynamicsWeights {
     /// Of a constant generator.
     pub generator: f64,
-    /// Of constant rates and a constant velocity of the centroid.
+    /// Of constant rates and a constant velocity of a point of the body, the centroid or another.
     pub velocity: f64,
     /// Of nearly constant accelerations.
     pub accelerating: f64,

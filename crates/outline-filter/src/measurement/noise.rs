@@ -205,8 +205,8 @@ impl NoiseModel {
         )
     }
 
-    /// Most noise that a frame may have: by comparison with what most frames have shown, once there are any, and as much as sides of masks go on by at
-    /// once.
+    /// Most noise that a frame may have: by comparison with what most frames have shown, once there are any, and as much as sides along the pixels go on
+    /// by at once.
     pub(crate) fn tolerated(&self) -> f64 {
         self.tolerated_where(self.tolerance)
     }

@@ -59,10 +59,9 @@ impl MotionFilter {
         self.window.is_due() || may_measure || self.next_to_take().is_some()
     }
 
-    /// Whether what is due after this frame is left to be done before the next. It says nothing that is stated after this one, unless a few frames
-    /// are asked for what they show: see [`rests_on_two_parts`](Self::rests_on_two_parts).
+    /// Whether what is due after this frame is left to be done before the next. It says nothing that is stated after this one.
     pub(super) fn leaves_work(&self) -> bool {
-        self.between_frames.is_left && !self.rests_on_two_parts()
+        self.between_frames.is_left
     }
 
     /// Makes all stages of cutting the map anew that are due, if any are.

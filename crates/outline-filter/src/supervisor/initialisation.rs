@@ -134,7 +134,8 @@ impl MotionFilter {
         let (next, is_last) = (waiting.next(), waiting.next().is_none());
         drop(waiting);
         if let Some((turn, rival)) = next {
-            rivals.push((turn, remapper.on_map_of(&begun.track, rival, frame)));
+            let in_common = remapper.cells_in_common(&self.history);
+            rivals.push((turn, remapper.on_map_of(&begun.track, (rival, in_common), frame)));
         }
         for _ in 0..most {
             let of_rivals = rivals.iter_mut().filter(|(_, rival)| rival.is_some());
@@ -236,10 +237,15 @@ impl Remapper<'_> {
 
     /// A rival of a track that was begun anew, at the first frame on the same cells: each of its own would be as many times the work, and a finer
     /// one would win by that alone. Where they have not begun alike it has cells of its own all the same.
-    fn on_map_of(&self, begun: &Track, rival: &Track, buffers: &mut Frame) -> Option<Remapped> {
+    fn on_map_of(
+        &self,
+        begun: &Track,
+        (rival, in_common): (&Track, CellsInCommon),
+        buffers: &mut Frame,
+    ) -> Option<Remapped> {
         let frames = self.placed(rival, false);
         let begun = begun.with_motion_of(rival).or_else(|| {
-            let mut begun = rival.recut(&frames, (1, CellsInCommon::NotNeeded), buffers)?;
+            let mut begun = rival.recut(&frames, (1, in_common), buffers)?;
             begun.begin_as(rival, frames.first()?.outline, buffers);
             Some(begun)
         })?;

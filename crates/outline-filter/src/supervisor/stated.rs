@@ -11,8 +11,8 @@ pub(super) struct Statement {
     pub(super) random: Summary,
     /// With the random and the systematic part.
     pub(super) all: Summary,
-    /// Covariance of where the body frame lies beside the outline, as an error of the pose on the left.
-    pub(super) body_frame: PoseMatrix,
+    /// Covariance of where the body frame lies beside the outline, as an error of the pose on the left; `None` where numbers do not allow to say that.
+    pub(super) body_frame: Option<PoseMatrix>,
     /// What the model leaves out, beyond doubt.
     pub(super) family: Option<WrongFamily>,
 }

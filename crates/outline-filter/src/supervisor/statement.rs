@@ -52,10 +52,13 @@ impl MotionFilter {
         // What the innovations show of the correlation counts once.
         factors = factors.map(|factor| factor.max(widening));
         random = random.widened(model, &centroid, &factors, [&none, &none])?;
-        let body_frame = track.kept_error(&random.pose)?;
-        let body_frame = Summary { covariance: of_pose_alone(&body_frame), ..random };
-        // What has been kept was told by frames that depended on each other as well.
-        let body_frame = of_pose(&body_frame.widened(model, &centroid, &factors, [&none, &none])?.covariance);
+        let mut body_frame = None;
+        if let Some(kept) = track.kept_error(&random.pose) {
+            // It was told by frames that depended on each other as well.
+            let kept = Summary { covariance: of_pose_alone(&kept), ..random };
+            let widened = kept.widened(model, &centroid, &factors, [&none, &none]);
+            body_frame = widened.map(|widened| of_pose(&widened.covariance));
+        }
         let doubts = [self.history.contradicted(model.parameter_count()), track.covariance_of_untold_turn()];
         random.covariance += doubts.into_iter().flatten().sum::<StateMatrix>();
         let (unmodelled, moments) = track.unmodelled_motions();
@@ -213,6 +216,7 @@ impl MotionFilter {
     #[must_use]
     pub fn state(&self) -> Option<MotionState> {
         let Statement { all, body_frame, .. } = self.statement()?;
+        let body_frame = body_frame.as_ref()?;
         let estimate = self.estimate()?;
         let mut observable = [false; MAX_PARAMETERS];
         observable.iter_mut().zip(estimate.parameters()).for_each(|(seen, p)| *seen = p.value.is_some());

@@ -67,7 +67,7 @@ pub(crate) mod dynamics {
     pub(crate) const BEGINS_TO_SHAKE: f64 = 0.0001;
     /// Probabilities before the third frame: most things on a table or in a machine turn about a fixed point, and few accelerate. Where frames
     /// do not tell a constant velocity from a constant generator, as where an object turns slowly, chance must not leave it out.
-    pub(crate) const PRIOR_OF_GENERATOR: f64 = 0.886;
+    pub(crate) const PRIOR_OF_GENERATOR: f64 = 0.881;
     pub(crate) const PRIOR_OF_VELOCITY: f64 = 0.09;
     /// Of the velocity of any point, which most bodies that are driven have at their axle.
     pub(crate) const PRIOR_OF_VELOCITY_OF_ANY: f64 = 0.01;

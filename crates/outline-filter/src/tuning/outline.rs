@@ -16,9 +16,10 @@ pub(crate) mod map {
     pub(crate) const PLENTY_PER_CELL: f64 = 4.0;
     /// Fewest points of the first frame for each cell: with fewer, cells would be seen by chance.
     pub(crate) const POINTS_PER_CELL: f64 = 1.0;
-    /// As that, of several frames together whose cells are to be seen by more than one of them: with one for each cell, where there is little noise, every
-    /// point has a cell of its own.
-    pub(crate) const POINTS_PER_COMMON_CELL: f64 = 2.0;
+    /// As that, of several frames together which must have cells in common: as many as the frames from which a map is first cut anew, so that each of them
+    /// shows every cell. With one, where there is little noise, every point has a cell of its own; with as few cells where many frames are kept, corners
+    /// would be cut off.
+    pub(crate) const POINTS_PER_COMMON_CELL: f64 = 4.0;
     /// Most cells of the first frame, which bounds the work of a frame.
     pub(crate) const MOST_CELLS: f64 = 800.0;
     /// An outline is cut into so many cells at least, so that it has sides.
