@@ -1,3 +1,4 @@
-//! The bounds of Cramer and Rao.
+//! The bounds of Cramer and Rao, and states.
+mod body_frame;
 mod bound;
 mod plane_bound;

@@ -72,6 +72,11 @@ impl DynamicsFilter {
         of_any_size!(self, hypotheses => hypotheses.update(measured, off));
     }
 
+    /// Whether all states are finite: of those that are not nothing goes on.
+    pub(crate) fn is_finite(&self) -> bool {
+        of_any_size!(self, hypotheses => hypotheses.is_finite())
+    }
+
     /// Records that the motion has changed in a way that no hypothesis models.
     pub(crate) fn record_change(&mut self) {
         of_any_size!(self, hypotheses => hypotheses.record_change());

@@ -279,6 +279,12 @@ impl<const N: usize> InteractingHypotheses<N> {
         }
     }
 
+    /// Whether the states of all hypotheses are finite. A covariance has no larger entries than its diagonal allows.
+    pub(crate) fn is_finite(&self) -> bool {
+        let numbers = |hypothesis: &Hypothesis<N>| hypothesis.mean.sum() + hypothesis.covariance.trace();
+        self.hypotheses.iter().map(numbers).sum::<f64>().is_finite()
+    }
+
     /// Records that the motion has changed in a way that no hypothesis models.
     pub(crate) fn record_change(&mut self) {
         self.outline_has_moved = true;

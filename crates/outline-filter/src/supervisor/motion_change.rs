@@ -76,6 +76,9 @@ impl MotionHistory {
                 if self.change.is_seen() {
                     dynamics.record_change();
                 }
+                if !dynamics.is_finite() {
+                    self.dynamics = None;
+                }
             }
         } else if let Some(apart) = outcome.pose.and_then(|measured| measured.error()) {
             self.record_apart(&apart);

@@ -1,0 +1,53 @@
+//! What may be wrong with how pictures are read and traced.
+use freeform_motion::outline_io::OriginWarning;
+
+use super::{ASSUMED_RATE, PictureInput};
+use crate::label_choice::label_warnings;
+
+impl PictureInput {
+    /// What is to be said after all have been read: of the labels, or of what the outlines say of the pixels.
+    pub(crate) fn closing_remarks(&self) -> Vec<String> {
+        let of_labels: Vec<String> = self.label_warnings().into_iter().map(|(_, warning)| warning).collect();
+        if of_labels.is_empty() {
+            self.warning_of_aspect().map(|(_, warning)| warning).into_iter().collect()
+        } else {
+            of_labels
+        }
+    }
+
+    /// What is wrong with the labels of masks read so far, with the codes.
+    fn label_warnings(&self) -> Vec<(OriginWarning, String)> {
+        self.traced.labels().map(label_warnings).unwrap_or_default()
+    }
+
+    /// That the pixels have another aspect, as far as the pictures read so far say, with the code.
+    pub(crate) fn warning_of_aspect(&self) -> Option<(OriginWarning, String)> {
+        let aspect = self.traced.better_pixel_aspect()?;
+        let symptom = "the object keeps its shape as it turns only with pixels of another aspect";
+        let message = format!(
+            "{symptom}: give --pixel-aspect {aspect:.2} (width over height), or the angles are wrong; or the camera looks at it from aside: --rectify"
+        );
+        Some((OriginWarning::PixelAspect, message))
+    }
+
+    /// Why the way of tracing is not to be trusted, with the codes.
+    pub(super) fn tracing_warnings(&self) -> Vec<(OriginWarning, String)> {
+        let drawn = self.options.candidates.as_deref();
+        self.chosen.iter().flat_map(|chosen| chosen.warnings(drawn)).collect()
+    }
+
+    /// What may be wrong with how they are read and traced, with the codes.
+    pub(crate) fn origin_warnings(&self) -> Vec<(OriginWarning, String)> {
+        let mut warnings = self.tracing_warnings();
+        if self.options.fps.is_none() && self.frame_count().is_some_and(|count| count > 1) {
+            let message = format!("{ASSUMED_RATE} frames/s assumed, the pictures do not say; give the rate with --fps");
+            warnings.push((OriginWarning::RateAssumed, message));
+        }
+        if self.traced.is_interlaced() {
+            let message = format!("{}; deinterlace it, such as with ffmpeg -vf yadif", OriginWarning::Interlaced);
+            warnings.push((OriginWarning::Interlaced, message));
+        }
+        warnings.extend(self.label_warnings());
+        warnings
+    }
+}
