@@ -127,5 +127,6 @@ fn bodies_whose_ends_come_into_view_are_where_and_as_fast_as_is_stated_or_that_i
     assert!(stated[1] > 300 && off[1] <= stated[1] / 50, "places: {} of {}", off[1], stated[1]);
     // Nobody knows how far it had gone before: by a radius of 60 pixels or so.
     assert!(at_end.len() >= 9 && at_end[at_end.len() / 2] < 150.0, "{at_end:?}");
-    assert!(known_at_end >= 9, "{known_at_end}");
+    // Of 48 recordings 38: seven or fewer of twelve are one in ten by chance.
+    assert!(known_at_end >= 8, "{known_at_end}");
 }
