@@ -32,11 +32,16 @@ impl MotionFilter {
             if !predict(&self.settings, &mut going_on, &mut history, seconds) {
                 return self.search(time, seconds, outline);
             }
+            let knows_turn = going_on.knows_turn();
             self.frame.load(outline, going_on.reference());
             // Nearly all frames of a lost object show something else.
             let outcome = going_on
                 .rejected_at_a_glance(&mut self.frame, &gate)
                 .unwrap_or_else(|| going_on.update(&mut self.frame, &gate, Comparison::NotAsked));
+            // It is there, but nobody knows by how many whole turns.
+            if outcome.is_accepted() && !knows_turn {
+                return self.search(time, seconds, outline);
+            }
             if outcome.is_accepted() {
                 history.record(&outcome, seconds);
                 self.replace(going_on, history, time, Phase::Tracking);

@@ -5,7 +5,7 @@ use freeform_riccati::{map_point, turn_rate};
 use nalgebra::{Matrix2, Matrix3, Rotation2, Vector2};
 
 use super::Track;
-use crate::map::map_between;
+use crate::{map::map_between, tuning::supervisor::LARGEST_TURN_DEVIATION};
 
 /// A turn between half a circle clockwise and half a circle anticlockwise.
 pub(crate) fn wrapped(turn: f64) -> f64 {
@@ -57,6 +57,20 @@ impl Track {
         let pose = self.body_pose();
         let turned = self.map.stretched_turn_generator().and_then(|turn| Some(pose * turn * pose.try_inverse()?));
         turned.map_or(1.0, |turned| turn_rate(&turned))
+    }
+
+    /// Whether it is known how far the object has turned, well enough that linearisations lead to where it is, or the outline shows no turn. A frame in which
+    /// it has turned further may be explained by another number of whole turns.
+    pub(crate) fn knows_turn(&self) -> bool {
+        if self.turn_is_unseen() {
+            return true;
+        }
+        let Some(summary) = self.summary_in_body_frame() else { return false };
+        let (model, k) = (self.model(), self.model().parameter_count());
+        let turns: Vec<f64> = model.basis().iter().take(k).map(turn_rate).collect();
+        let entry = |i: usize, j: usize| turns[i] * turns[j] * summary.covariance[(i, j)];
+        let variance: f64 = (0..k).flat_map(|i| (0..k).map(move |j| (i, j))).map(|(i, j)| entry(i, j)).sum();
+        variance.sqrt() < LARGEST_TURN_DEVIATION
     }
 
     /// A pose turned by an angle, rad, anticlockwise where y points up, about the object's centroid. Where the model may stretch the outline, it is

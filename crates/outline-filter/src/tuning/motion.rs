@@ -40,6 +40,8 @@ pub(crate) mod supervisor {
     pub(crate) const GIVEN_UP: usize = 30;
     /// Squared innovation of one frame beyond which a lost object has not gone on as it was.
     pub(crate) const LARGEST_INNOVATION: f64 = 80.0;
+    /// Deviation of the turn, rad, with which a lost object may be found where it was expected: two of it are a quarter of a circle.
+    pub(crate) const LARGEST_TURN_DEVIATION: f64 = std::f64::consts::FRAC_PI_4;
     /// Steps over which a parameter must be known at least, however fast the motion changes.
     pub(crate) const STEPS_KNOWN: f64 = 10.0;
 }
