@@ -78,13 +78,14 @@ const TRACING_EXAMPLES: [TracingWarning; 3] = [
 ];
 
 /// Warnings of where outlines come from that are none of tracing.
-const OF_ORIGIN: [OriginWarning; 6] = [
+const OF_ORIGIN: [OriginWarning; 7] = [
     OriginWarning::FilesOutOfOrder,
     OriginWarning::RateAssumed,
     OriginWarning::Interlaced,
     OriginWarning::LabelInParts,
     OriginWarning::LabelLeftOut,
     OriginWarning::VoidBorders,
+    OriginWarning::PixelAspect,
 ];
 
 /// Code and example of every section of the page: the lines that begin with `>`, as one.
