@@ -188,6 +188,7 @@ impl MotionFilter {
     pub(super) fn process(&mut self, time: f64, outline: &Outline) -> (Option<FrameMeasurement>, Option<Rejection>) {
         self.do_what_is_due();
         self.measure_before_next();
+        self.lose_if_turn_is_unknown(time);
         self.clock.last_frame = time;
         let was_changing = self.history.is_changing();
         let outcome = match self.phase {
