@@ -1,7 +1,7 @@
 //! Angles that go on beyond half a turn.
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use freeform_estimate::MotionState;
+use freeform_estimate::{MotionState, PoseParameter};
 
 /// Steps of the usual length in which an object may go unseen without whole turns being in doubt: it turns by less than half a circle from frame to frame.
 const LONGEST_STEP: f64 = 1.5;
@@ -52,12 +52,14 @@ impl Omega {
 }
 
 impl ContinuousAngle {
-    /// The angle of the next pose, in rad, of an angle between -pi and pi, and the standard deviation that comes to its own. An angle that is not known is
-    /// returned as it is.
-    pub fn next(&mut self, state: &MotionState, angle: f64) -> (f64, f64) {
-        if !angle.is_finite() {
-            return (angle, 0.0);
-        }
+    /// Makes the angle of the next pose go on from those before it. It is given as that of a state, between -pi and pi rad, and its standard deviation
+    /// gets what whole turns may have been missed. Where there is none, or it is not known, nothing changes.
+    pub fn go_on(&mut self, state: &MotionState, pose: &mut [PoseParameter]) {
+        let angle = pose.iter_mut().find(|parameter| parameter.name == "angle");
+        let Some(PoseParameter { value, standard_deviation, .. }) = angle.filter(|angle| angle.value.is_finite())
+        else {
+            return;
+        };
         let (time, omega) = (state.time(), Omega::of(state));
         let mut expected = 0.0;
         if let Some(last) = self.last {
@@ -71,15 +73,13 @@ impl ContinuousAngle {
                 self.open += seconds;
             }
         }
-        let missed = self.missed(omega);
+        let deviation = self.deviation.hypot(self.missed(omega));
         if omega.is_some() {
-            self.deviation = self.deviation.hypot(missed);
-            self.open = 0.0;
+            (self.deviation, self.open, self.omega) = (deviation, 0.0, omega);
         }
-        self.omega = omega.or(self.omega);
-        let angle = angle + TAU * ((expected - angle) / TAU).round();
-        self.last = Some(LastPose { time, angle });
-        (angle, if omega.is_some() { self.deviation } else { self.deviation.hypot(missed) })
+        *value += TAU * ((expected - *value) / TAU).round();
+        *standard_deviation = standard_deviation.hypot(deviation);
+        self.last = Some(LastPose { time, angle: *value });
     }
 
     /// Standard deviation of the whole turns that may have been missed where poses were missing, by the angular velocity afterwards.
@@ -128,12 +128,19 @@ mod tests {
         .into()
     }
 
+    /// An angle with the deviation that comes to its own, after those before it.
+    fn next(angles: &mut ContinuousAngle, state: &MotionState, angle: f64) -> (f64, f64) {
+        let mut pose = [PoseParameter { name: "angle", value: angle, standard_deviation: 0.0 }];
+        angles.go_on(state, &mut pose);
+        (pose[0].value, pose[0].standard_deviation)
+    }
+
     /// The last of some angles, of times, angular velocities and their deviation, which are taken between -pi and pi.
     fn last(poses: &[(f64, f64, f64)], deviation: f64) -> (f64, f64) {
         let mut angles = ContinuousAngle::default();
         let mut last = (0.0, 0.0);
         for (time, angle, omega) in poses {
-            last = angles.next(&state(*time, *omega, deviation), angle - TAU * (angle / TAU).round());
+            last = next(&mut angles, &state(*time, *omega, deviation), angle - TAU * (angle / TAU).round());
         }
         last
     }
@@ -168,9 +175,9 @@ mod tests {
     fn angles_begin_near_none_and_those_that_are_not_known_are_passed_over() {
         assert_eq!(last(&[(0.0, PI - 0.1, 0.0)], 0.01).0, PI - 0.1);
         let mut angles = ContinuousAngle::default();
-        let first = angles.next(&state(0.0, 40.0, 0.1), 3.0);
-        assert!(angles.next(&state(0.01, 40.0, 0.1), f64::NAN).0.is_nan());
-        let next = angles.next(&state(0.02, 40.0, 0.1), 3.8 - TAU);
-        assert!(first == (3.0, 0.0) && (next.0 - 3.8).abs() < 1e-9, "{first:?} {next:?}");
+        let first = next(&mut angles, &state(0.0, 40.0, 0.1), 3.0);
+        assert!(next(&mut angles, &state(0.01, 40.0, 0.1), f64::NAN).0.is_nan());
+        let later = next(&mut angles, &state(0.02, 40.0, 0.1), 3.8 - TAU);
+        assert!(first == (3.0, 0.0) && (later.0 - 3.8).abs() < 1e-9, "{first:?} {later:?}");
     }
 }

@@ -178,8 +178,8 @@ impl Trajectory {
         let rows = self.rows.iter().map(|row| {
             let state = row.state()?;
             let mut pose = state.pose_parameters();
-            let angles = angles.entry((&row.object, row.segment)).or_default();
-            pose.iter_mut().for_each(|parameter| report(parameter, scale, (state, angles)));
+            angles.entry((&row.object, row.segment)).or_default().go_on(state, &mut pose);
+            pose.iter_mut().for_each(|parameter| report(parameter, scale));
             let motion = state.motion();
             let velocity = row.velocity_not_stated.is_none().then(|| state.velocity_of_middle());
             Some(PoseAndMotion {
@@ -256,19 +256,11 @@ fn smooth_object(rows: &mut [&mut TrajectoryRow], noise: &ProcessNoise) -> Resul
     Ok(())
 }
 
-/// Changes a number of the pose of a state to how it is reported.
-fn report(
-    parameter: &mut PoseParameter,
-    scale: Option<CameraScale>,
-    (state, angles): (&MotionState, &mut ContinuousAngle),
-) {
+/// Changes a number of a pose to how it is reported.
+fn report(parameter: &mut PoseParameter, scale: Option<CameraScale>) {
     let PoseParameter { name, value, standard_deviation } = parameter;
     // As a generator changes between image and space, so does a map.
     match (*name, scale.map(CameraScale::value)) {
-        ("angle", _) => {
-            let (angle, missed) = angles.next(state, *value);
-            (*value, *standard_deviation) = (angle, standard_deviation.hypot(missed));
-        }
         ("x" | "y", Some(scale)) => (*value, *standard_deviation) = (*value / scale, *standard_deviation / scale),
         ("m31" | "m32", Some(scale)) => {
             (*value, *standard_deviation) = (*value * scale, *standard_deviation * scale);

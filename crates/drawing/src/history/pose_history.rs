@@ -1,5 +1,5 @@
 //! Where an object was over time, kept for figures.
-use freeform_motion::estimate::MotionState;
+use freeform_motion::estimate::{MotionState, PoseParameter};
 use freeform_motion::tracker::{ContinuousAngle, Observation};
 
 use super::thinned::{Kept, Thinned};
@@ -42,14 +42,11 @@ impl PoseHistory {
         // Of the turns that the outlines leave open none is drawn.
         let is_ambiguous = observation.ambiguity.is_some();
         let mut parameters = Vec::new();
-        for parameter in state.pose_parameters() {
-            let (mut value, mut deviation) = (parameter.value, parameter.standard_deviation);
-            if parameter.name == "angle" {
-                let (angle, missed) = self.angles.next(state, value);
-                (value, deviation) = (angle, deviation.hypot(missed));
-            }
-            let is_stated = value.is_finite() && !(is_ambiguous && parameter.name == "angle");
-            parameters.push(is_stated.then_some([value, deviation]));
+        let mut pose = state.pose_parameters();
+        self.angles.go_on(state, &mut pose);
+        for PoseParameter { name, value, standard_deviation } in pose {
+            let is_stated = value.is_finite() && !(is_ambiguous && name == "angle");
+            parameters.push(is_stated.then_some([value, standard_deviation]));
         }
         self.samples.push(PoseSample { time: state.time(), parameters });
         if self.samples.kept().len() > MOST_KEPT {

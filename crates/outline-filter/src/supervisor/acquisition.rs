@@ -38,11 +38,11 @@ impl MotionFilter {
             let outcome = going_on
                 .rejected_at_a_glance(&mut self.frame, &gate)
                 .unwrap_or_else(|| going_on.update(&mut self.frame, &gate, Comparison::NotAsked));
-            // It is there, but nobody knows by how many whole turns.
-            if outcome.is_accepted() && !knows_turn {
-                return self.search(time, seconds, outline);
-            }
             if outcome.is_accepted() {
+                // It is there, but nobody knows by how many whole turns.
+                if !knows_turn {
+                    return self.search(time, seconds, outline);
+                }
                 history.record(&outcome, seconds);
                 self.replace(going_on, history, time, Phase::Tracking);
                 return Some(self.look_elsewhere(outcome.after_rejected(), time, outline));
@@ -58,11 +58,9 @@ impl MotionFilter {
     /// turns, and the motion with them.
     pub(super) fn lose_if_turn_is_unknown(&mut self, time: f64) {
         let seconds = time - self.clock.of_track;
-        let is_unseen = |track: &&Track| seconds > UNSEEN_STEPS * track.belief().memory.step;
-        let Some(track) = self.track.as_ref().filter(is_unseen) else { return };
-        if self.phase != Phase::Tracking {
-            return;
-        }
+        let goes_unseen =
+            |track: &&Track| self.phase == Phase::Tracking && seconds > UNSEEN_STEPS * track.belief().memory.step;
+        let Some(track) = self.track.as_ref().filter(goes_unseen) else { return };
         let (mut expected, mut history) = (track.clone(), self.history.clone());
         if predict(&self.settings, &mut expected, &mut history, seconds) && !expected.knows_turn() {
             self.phase = Phase::Lost;

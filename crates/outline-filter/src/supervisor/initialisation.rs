@@ -56,7 +56,11 @@ impl MotionFilter {
                 Remapping::Placed(placed) if placed.turn == turn => Remapping::Due(Due::Cutting(placed)),
                 Remapping::Again { cuts } => Remapping::Due(Due::Placing { turn, cuts }),
                 // The map is cut for another hypothesis where they have been exchanged meanwhile.
-                _ => Remapping::Due(Due::Placing { turn, cuts: 0 }),
+                Remapping::Placed(_)
+                | Remapping::Drafted(_)
+                | Remapping::Measured(_)
+                | Remapping::Due(_)
+                | Remapping::Idle => Remapping::Due(Due::Placing { turn, cuts: 0 }),
             };
             self.window.set_remapping(next);
             if !self.leaves_work() {
@@ -71,6 +75,16 @@ impl MotionFilter {
         self.window.end_unless_few(self.track.as_ref().map_or(0, Track::cell_count));
     }
 
+    /// Whether the motion changes, as is seen or as the settings say.
+    fn may_change(&self) -> bool {
+        self.history.is_changing() || !self.settings.process_noise.is_none()
+    }
+
+    /// Whether frames must have cells in common that are cut from them.
+    fn cells_in_common(&self) -> CellsInCommon {
+        if self.may_change() { CellsInCommon::Needed } else { CellsInCommon::NotNeeded }
+    }
+
     /// Puts the points of the first frames in order, for the hypothesis of a turn, after so many cuts, for a map to be cut along them: where there are
     /// rivals, after the next frame.
     pub(super) fn place(&mut self, turn: f64, cuts: usize) -> Remapping {
@@ -80,7 +94,7 @@ impl MotionFilter {
             return Remapping::Idle;
         }
         let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns_of_kept() };
-        let frames = remapper.placed(track, remapper.may_change(&self.history));
+        let frames = remapper.placed(track, self.may_change());
         let Some(runs) = track.points_along(&frames, 1, &mut self.frame) else { return Remapping::Idle };
         let placed = Box::new(Placed { runs, turn, cuts });
         if hypotheses == 1 { Remapping::Due(Due::Cutting(placed)) } else { Remapping::Placed(placed) }
@@ -88,8 +102,7 @@ impl MotionFilter {
 
     /// Cuts the map anew along points in order.
     pub(super) fn cut(&mut self, Placed { runs, turn, cuts }: Placed) -> Remapping {
-        let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns_of_kept() };
-        let in_common = remapper.cells_in_common(&self.history);
+        let in_common = self.cells_in_common();
         let placed = self.track.as_ref().zip(self.window.first());
         let cut = placed.and_then(|(track, first)| track.recut_along(runs, first, in_common, &mut self.frame));
         cut.map_or(Remapping::Idle, |track| Remapping::Drafted(Box::new(Draft { track, turn, cuts: cuts + 1 })))
@@ -126,6 +139,7 @@ impl MotionFilter {
         most: usize,
         mut ahead: TakenAhead,
     ) -> Remapping {
+        let in_common = self.cells_in_common();
         let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns_of_kept() };
         let frame = &mut self.frame;
         let frames = remapper.placed(&present.track, false);
@@ -134,7 +148,6 @@ impl MotionFilter {
         let (next, is_last) = (waiting.next(), waiting.next().is_none());
         drop(waiting);
         if let Some((turn, rival)) = next {
-            let in_common = remapper.cells_in_common(&self.history);
             rivals.push((turn, remapper.on_map_of(&begun.track, (rival, in_common), frame)));
         }
         for _ in 0..most {
@@ -223,16 +236,6 @@ impl Remapper<'_> {
     /// The frames kept, where they are cut from; `changes` tells whether the motion of the track has been another in them.
     fn placed(&self, track: &Track, changes: bool) -> Vec<PlacedFrame<'_>> {
         if changes { self.window.as_found() } else { self.window.by_motion(track) }
-    }
-
-    /// Whether the motion changes, as is seen or as the settings say.
-    fn may_change(&self, history: &MotionHistory) -> bool {
-        history.is_changing() || !self.settings.process_noise.is_none()
-    }
-
-    /// Whether frames must have cells in common that are cut from them.
-    fn cells_in_common(&self, history: &MotionHistory) -> CellsInCommon {
-        if self.may_change(history) { CellsInCommon::Needed } else { CellsInCommon::NotNeeded }
     }
 
     /// A rival of a track that was begun anew, at the first frame on the same cells: each of its own would be as many times the work, and a finer

@@ -18,8 +18,9 @@ const FORMAT: StateFormat = state_format(*b"filt", "filter");
 impl MotionFilter {
     /// Everything that the filter knows, as bytes: 50 to 100 kB for an outline of 400 points, for each rival of its turn up to as much again,
     /// before the object was found again also up to two outlines, and while its map is cut anew the frames that it is cut from, at most 128, their
-    /// points once more or the track and its rivals on the new map. What was [measured between frames](Self::prepare) is left to the next step. A filter [made from them](Self::from_bytes) goes on as this one would, to the
-    /// last bit. The first four bytes are the version of the format, little-endian.
+    /// points once more or the track and its rivals on the new map. What was [measured between frames](Self::prepare) is left to the next step. A
+    /// filter [made from them](Self::from_bytes) goes on as this one would, to the last bit. The first four bytes are the version of the format,
+    /// little-endian.
     ///
     /// # Errors
     /// None for a filter; the encoder reports errors of its sink, and memory has none.

@@ -1,10 +1,10 @@
 //! Turns of an object in the plane.
 use std::f64::consts::{PI, TAU};
 
-use freeform_riccati::{map_point, turn_rate};
-use nalgebra::{Matrix2, Matrix3, Rotation2, Vector2};
+use freeform_riccati::{MAX_PARAMETERS, map_point, turn_rate};
+use nalgebra::{Matrix2, Matrix3, Rotation2, SVector, Vector2};
 
-use super::Track;
+use super::{Track, of_pose};
 use crate::{map::map_between, tuning::supervisor::LARGEST_TURN_DEVIATION};
 
 /// A turn between half a circle clockwise and half a circle anticlockwise.
@@ -66,11 +66,9 @@ impl Track {
             return true;
         }
         let Some(summary) = self.summary_in_body_frame() else { return false };
-        let (model, k) = (self.model(), self.model().parameter_count());
-        let turns: Vec<f64> = model.basis().iter().take(k).map(turn_rate).collect();
-        let entry = |i: usize, j: usize| turns[i] * turns[j] * summary.covariance[(i, j)];
-        let variance: f64 = (0..k).flat_map(|i| (0..k).map(move |j| (i, j))).map(|(i, j)| entry(i, j)).sum();
-        variance.sqrt() < LARGEST_TURN_DEVIATION
+        let basis = self.model().basis();
+        let turn = SVector::<f64, MAX_PARAMETERS>::from_fn(|j, _| basis.get(j).map_or(0.0, turn_rate));
+        turn.dot(&(of_pose(&summary.covariance) * turn)).sqrt() < LARGEST_TURN_DEVIATION
     }
 
     /// A pose turned by an angle, rad, anticlockwise where y points up, about the object's centroid. Where the model may stretch the outline, it is
