@@ -51,9 +51,12 @@ pub(super) fn mix<const N: usize>(
             Some(arrivals) if widens(hypothesis, of_all, share, units) => {
                 arrivals.push(Arrival { number, share, state: of_all.as_state_of(hypothesis, model, units) });
             }
+            _ if hypothesis.shared() < hypothesis.size() => {
+                let state = of_all.as_state_of(hypothesis, model, units);
+                hypothesis.blend((&state.mean, &state.covariance), share, hypothesis.size());
+            }
             _ => {
-                let shared = hypothesis.shared();
-                hypothesis.blend((&of_all.mean, &of_all.covariance), share, shared);
+                hypothesis.blend((&of_all.mean, &of_all.covariance), share, hypothesis.size());
                 of_all.add_unknown_to(hypothesis, model, units, share);
             }
         }
@@ -120,7 +123,8 @@ fn counting<'a, const N: usize>(
 }
 
 impl<const N: usize> Pooled<N> {
-    /// As the state of what has changed to a hypothesis. What its course has alone is as it was, but nothing is known of it.
+    /// As the state of what has changed to a hypothesis. Of what its course has alone nothing is known, whatever it has been: a motion that has ended has
+    /// left there what no longer holds.
     fn as_state_of(
         &self,
         hypothesis: &Hypothesis<N>,
@@ -128,7 +132,7 @@ impl<const N: usize> Pooled<N> {
         units: (&CentredVector, f64),
     ) -> Hypothesis<N> {
         let (course, shared) = (hypothesis.course, hypothesis.shared());
-        let mean = SVector::from_fn(|i, _| if i < shared { self.mean[i] } else { hypothesis.mean[i] });
+        let mean = SVector::from_fn(|i, _| if i < shared { self.mean[i] } else { 0.0 });
         let covariance = SMatrix::from_fn(|i, j| if i < shared && j < shared { self.covariance[(i, j)] } else { 0.0 });
         let mut state = Hypothesis { course, mean, covariance };
         self.add_unknown_to(&mut state, model, units, 1.0);

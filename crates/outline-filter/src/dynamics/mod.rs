@@ -17,6 +17,8 @@ mod family_fit;
 mod hypothesis;
 mod innovations;
 mod interacting;
+#[cfg(test)]
+mod jump_tests;
 mod mixing;
 mod null_motions;
 mod perspective;
