@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::{
     centred::{Summary, carried, centred_generator, centred_order, of_both, parts},
-    course::Course,
+    course::{Course, PointOfBody},
     hypothesis::Hypothesis,
     interacting::{InteractingHypotheses, MOST},
     steady_change::PossibleChange,
@@ -105,8 +105,10 @@ impl<const N: usize> InteractingHypotheses<N> {
         for (hypothesis, weight) in self.hypotheses.iter().zip(&self.weights) {
             let turns = match hypothesis.course {
                 Course::ConstantGenerator => true,
-                Course::ConstantVelocity { .. } => false,
-                Course::Shaken { .. }
+                Course::ConstantVelocity { of: PointOfBody::NearCentroid } => false,
+                // The centroid changes its velocity then, which is no change of this motion.
+                Course::ConstantVelocity { of: PointOfBody::Any }
+                | Course::Shaken { .. }
                 | Course::Accelerating { .. }
                 | Course::ChangingGenerator { .. }
                 | Course::SteadyChange { .. } => continue,

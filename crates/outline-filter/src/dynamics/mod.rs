@@ -14,11 +14,11 @@ mod course;
 mod dynamics_filter;
 mod family;
 mod family_fit;
+#[cfg(test)]
+mod followed_poses_tests;
 mod hypothesis;
 mod innovations;
 mod interacting;
-#[cfg(test)]
-mod jump_tests;
 mod mixing;
 mod null_motions;
 mod perspective;
