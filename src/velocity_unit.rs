@@ -52,6 +52,25 @@ impl VelocityUnit {
         }
     }
 
+    /// The unit of a number of a pose in data, by its name: that of length for places, `1` where it has no name.
+    ///
+    /// ```
+    /// use freeform_motion::VelocityUnit;
+    ///
+    /// assert_eq!(["angle", "x", "scale"].map(|name| VelocityUnit::Pixels.of_pose(name)), ["rad", "px", "1"]);
+    /// ```
+    #[must_use]
+    pub fn of_pose(self, name: &str) -> &'static str {
+        match (name, self) {
+            ("angle", _) => "rad",
+            ("x" | "y", Self::Pixels) => "px",
+            ("x" | "y", Self::PixelHeights) => "pixel heights",
+            ("m31" | "m32", Self::Pixels) => "1/px",
+            ("m31" | "m32", Self::PixelHeights) => "1/pixel heights",
+            _ => "1",
+        }
+    }
+
     /// The unit of a parameter in data, by what it is and the unit that its family of motions gives it.
     #[must_use]
     pub fn of_parameter(self, kind: ParameterKind, unit: &'static str) -> &'static str {

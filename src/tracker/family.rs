@@ -2,7 +2,7 @@ use std::fmt;
 
 use freeform_riccati::{MotionModel, ParameterKind, PlaneMotion};
 
-use super::settings::Method;
+use super::{settings::Method, trajectory::Trajectory};
 
 /// Family of motions that is identified: of the picture, or of a plane in space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,6 +27,14 @@ impl MotionFamily {
     #[must_use]
     pub fn has_velocity(self, method: Method) -> bool {
         method == Method::Filter && self != Self::Plane
+    }
+
+    /// Names of the numbers of a pose that a method gives, where they are known, in order, as of a [`Trajectory`](super::Trajectory): none of a plane in
+    /// space, and none with the adaptive method.
+    #[must_use]
+    pub fn pose_names(self, method: Method) -> &'static [&'static str] {
+        let model = self.model().filter(|_| method == Method::Filter);
+        model.map_or(&[], Trajectory::pose_names)
     }
 
     /// Names of the parameters in order.

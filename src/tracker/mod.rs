@@ -15,6 +15,7 @@ mod not_stated;
 mod object;
 mod observation;
 mod plane_object;
+mod poses;
 mod queues;
 mod recording;
 #[cfg(feature = "serde")]
@@ -49,6 +50,7 @@ pub use self::{
     family::MotionFamily,
     not_stated::NotStated,
     observation::{ObjectPhase, Observation},
+    poses::Poses,
     recording::{Followed, ReadAhead, Recorded},
     result::{ObjectResult, VELOCITY_NAMES},
     result_csv::{AdaptiveColumns, TraceWriter, write_results},

@@ -147,6 +147,13 @@ impl Observation {
         self.velocity.is_none().then(|| NotStated::of(self.ambiguity.is_some(), self.hides_velocity))
     }
 
+    /// Why a number of the pose is not stated, of those that are not, as known after the frame.
+    #[must_use]
+    pub fn pose_not_stated(&self) -> NotStated {
+        // Not even where it is.
+        self.present_state().map_or(NotStated::Unknown, |_| self.turn_not_stated())
+    }
+
     /// Why an angle or matrix of the pose is not stated where it is not.
     pub(super) fn turn_not_stated(&self) -> NotStated {
         NotStated::of(self.ambiguity.is_some(), !self.hidden.is_empty())

@@ -66,6 +66,12 @@ impl Observation {
         self.rejection.is_none()
     }
 
+    /// The state at the time of the frame; `None` where it is only that at which a lost object was seen last.
+    #[must_use]
+    pub fn present_state(&self) -> Option<&MotionState> {
+        self.state.as_ref().filter(|state| self.time == Some(state.time()))
+    }
+
     /// The parameters of the motion, whichever family it is of.
     #[must_use]
     pub fn parameters(&self) -> Option<Vec<ParameterEstimate>> {

@@ -15,8 +15,8 @@ use crate::adaptive_progress::AdaptiveProgress;
 
 /// Writes a trace as CSV: one row per object and frame with the parameters as identified so far. The columns are `object`, `frame`, `time`, `phase`,
 /// `accepted`, then each parameter and its standard deviation (`_std`); with the motion filter, but of a plane in space, `v1`, `v1_std`, `v2` and
-/// `v2_std`, the velocity of the middle of the object; `reason`, why the frame was not accepted; and `unstated`, which values are empty and why, such
-/// as `omega ambiguous; b1 ambiguous`, with the words of [`NotStated`].
+/// `v2_std`, the velocity of the middle of the object; `reason`, why the frame was not accepted; `unstated`, which values are empty and why, such
+/// as `omega ambiguous; b1 ambiguous`, with the words of [`NotStated`]; and, with `v1` and `v2`, `point_x` and `point_y`: where that middle is.
 ///
 /// ```
 /// use freeform_motion::outline_io::{DEFAULT_OBJECT, OutlineFrame};
@@ -34,8 +34,8 @@ use crate::adaptive_progress::AdaptiveProgress;
 ///     trace.write(&tracker.push(&outline))?;
 /// }
 /// let text = String::from_utf8(trace.into_inner()?)?;
-/// assert!(text.starts_with("object,frame,time,phase,accepted,omega,omega_std,b1,b1_std,b2,b2_std,v1,v1_std,v2,v2_std,reason,unstated\n"));
-/// assert!(text.lines().nth(1).unwrap().ends_with(",omega unknown; b1 unknown; b2 unknown; v1 unknown; v2 unknown"));
+/// assert!(text.starts_with("object,frame,time,phase,accepted,omega,omega_std,b1,b1_std,b2,b2_std,v1,v1_std,v2,v2_std,reason,unstated,point_x,point_y\n"));
+/// assert!(text.lines().nth(1).unwrap().ends_with(",omega unknown; b1 unknown; b2 unknown; v1 unknown; v2 unknown,,"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
@@ -79,6 +79,9 @@ impl<W: Write> TraceWriter<W> {
         }
         // The last columns, so that those before them are where they always were.
         header.extend(["reason", "unstated"].map(str::to_owned));
+        if trace.has_velocity() {
+            header.extend(POINT_COLUMNS.map(str::to_owned));
+        }
         trace.writer.write_record(&header).map_err(io::Error::from)?;
         Ok(trace)
     }
@@ -114,6 +117,9 @@ impl<W: Write> TraceWriter<W> {
         row.push(observation.rejection.as_ref().map_or_else(String::new, ToString::to_string));
         let parameters = observation.unstated(self.family);
         row.push(NotStated::cell(parameters.into_iter().chain(of_velocity(velocity_unstated))));
+        if self.has_velocity() {
+            row.extend(point_cells(observation.velocity.as_ref()));
+        }
         self.writer.write_record(&row).map_err(io::Error::from)
     }
 
@@ -148,6 +154,15 @@ pub(super) fn velocity_cells(velocity: Option<&PointVelocity>) -> [String; 4] {
     let Some(velocity) = velocity.filter(|velocity| velocity.is_finite()) else { return Default::default() };
     let deviations = velocity.standard_deviations();
     [velocity.velocity.x, deviations.x, velocity.velocity.y, deviations.y].map(|number| number.to_string())
+}
+
+/// Names of the columns of the point that moves with this velocity, where it is in that frame.
+pub(super) const POINT_COLUMNS: [&str; 2] = ["point_x", "point_y"];
+
+/// What is in them.
+pub(super) fn point_cells(velocity: Option<&PointVelocity>) -> [String; 2] {
+    let Some(velocity) = velocity.filter(|velocity| velocity.is_finite()) else { return Default::default() };
+    [velocity.point.x, velocity.point.y].map(|number| number.to_string())
 }
 
 /// Both components with why they are not stated, if they are not.

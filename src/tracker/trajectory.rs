@@ -7,7 +7,7 @@ use freeform_estimate::{
 use freeform_riccati::{CameraScale, MotionModel};
 
 use super::{
-    ContinuousAngle, MethodSettings, Tracker, not_stated::NotStated, observation::Observation, result::VELOCITY_NAMES,
+    MethodSettings, Tracker, not_stated::NotStated, observation::Observation, poses::Poses, result::VELOCITY_NAMES,
 };
 use crate::rejection::FrameRejection;
 
@@ -65,7 +65,7 @@ pub struct TrajectoryRow {
 /// Pose and motion of an object in one frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PoseAndMotion {
-    /// The pose parameters as in [`MotionState::pose_parameters`], except that angles are [continuous](ContinuousAngle) from row to row of a segment and
+    /// The pose parameters as in [`MotionState::pose_parameters`], except that angles are [continuous](super::ContinuousAngle) from row to row of a segment and
     /// may exceed half a turn.
     pub pose: Vec<PoseParameter>,
     /// The motion.
@@ -174,12 +174,10 @@ impl Trajectory {
     /// and velocities divided by it.
     #[must_use]
     pub fn poses(&self, scale: Option<CameraScale>) -> Vec<Option<PoseAndMotion>> {
-        let mut angles: HashMap<(&str, usize), ContinuousAngle> = HashMap::new();
+        let mut poses = Poses::new(scale);
         let rows = self.rows.iter().map(|row| {
             let state = row.state()?;
-            let mut pose = state.pose_parameters();
-            angles.entry((&row.object, row.segment)).or_default().go_on(state, &mut pose);
-            pose.iter_mut().for_each(|parameter| report(parameter, scale));
+            let pose = poses.of_state(&row.object, row.segment, state);
             let motion = state.motion();
             let velocity = row.velocity_not_stated.is_none().then(|| state.velocity_of_middle());
             Some(PoseAndMotion {
@@ -254,17 +252,4 @@ fn smooth_object(rows: &mut [&mut TrajectoryRow], noise: &ProcessNoise) -> Resul
         });
     }
     Ok(())
-}
-
-/// Changes a number of a pose to how it is reported.
-fn report(parameter: &mut PoseParameter, scale: Option<CameraScale>) {
-    let PoseParameter { name, value, standard_deviation } = parameter;
-    // As a generator changes between image and space, so does a map.
-    match (*name, scale.map(CameraScale::value)) {
-        ("x" | "y", Some(scale)) => (*value, *standard_deviation) = (*value / scale, *standard_deviation / scale),
-        ("m31" | "m32", Some(scale)) => {
-            (*value, *standard_deviation) = (*value * scale, *standard_deviation * scale);
-        }
-        _ => {}
-    }
 }

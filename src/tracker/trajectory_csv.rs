@@ -4,13 +4,13 @@ use freeform_riccati::{CameraScale, MotionModel};
 
 use super::{
     not_stated::NotStated,
-    result_csv::{text_cell, velocity_cells, velocity_columns},
+    result_csv::{POINT_COLUMNS, point_cells, text_cell, velocity_cells, velocity_columns},
     trajectory::{PoseAndMotion, Trajectory},
 };
 
 /// Writes a trajectory as CSV: one row per object and frame with pose and motion and their standard deviations, the segment, the velocity of the middle
-/// of the object (`v1`, `v2`), why the frame was not accepted (`reason`), and which values are empty and why (`unstated`, as `angle ambiguous; omega
-/// ambiguous`). Positions and velocities are divided by a camera scale.
+/// of the object (`v1`, `v2`), why the frame was not accepted (`reason`), which values are empty and why (`unstated`, as `angle ambiguous; omega
+/// ambiguous`), and where the middle is whose velocity is `v1` and `v2` (`point_x`, `point_y`). Positions and velocities are divided by a camera scale.
 ///
 /// # Errors
 ///
@@ -28,7 +28,7 @@ pub fn write_trajectory(
     // The last columns, so that those before them are where they always were.
     header.push("segment".to_owned());
     header.extend(velocity_columns());
-    header.extend(["reason", "unstated"].map(str::to_owned));
+    header.extend(["reason", "unstated"].into_iter().chain(POINT_COLUMNS).map(str::to_owned));
     writer.write_record(&header).map_err(io::Error::from)?;
     for (row, known) in trajectory.rows().iter().zip(trajectory.poses(scale)) {
         let mut fields = vec![
@@ -38,7 +38,8 @@ pub fn write_trajectory(
             row.accepted.to_string(),
         ];
         let unstated = NotStated::cell(row.unstated(known.as_ref(), model));
-        let velocity = velocity_cells(known.as_ref().and_then(|known| known.velocity.as_ref()));
+        let velocity = known.as_ref().and_then(|known| known.velocity.as_ref());
+        let (velocity, point) = (velocity_cells(velocity), point_cells(velocity));
         match known {
             Some(PoseAndMotion { pose, motion, .. }) => {
                 let pose = pose.iter().map(|p| [Some(p.value), Some(p.standard_deviation)]);
@@ -51,6 +52,7 @@ pub fn write_trajectory(
         fields.extend(velocity);
         fields.push(row.rejection.as_ref().map_or_else(String::new, ToString::to_string));
         fields.push(unstated);
+        fields.extend(point);
         writer.write_record(&fields).map_err(io::Error::from)?;
     }
     writer.flush()

@@ -63,7 +63,7 @@ pub(crate) struct IdentifyArgs {
 
     /// Write one row per frame with the parameters identified up to that frame
     ///
-    /// With the filter v1 and v2 are the velocity of the middle of the object. The column reason says why a frame was not accepted, unstated
+    /// With the filter v1 and v2 are the velocity of the middle of the object, point_x and point_y where that is. The column reason says why a frame was not accepted, unstated
     /// which values are empty and why, as in 'omega ambiguous; b1 ambiguous': ambiguous, unobservable or unknown.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) trace: Option<PathBuf>,
@@ -77,8 +77,10 @@ pub(crate) struct IdentifyArgs {
     /// while it is lost, and in a frame that is not an outline. The angle and the matrix are also empty while two turns explain
     /// the outlines. In a rejected frame the fields are the prediction. The column segment is a number that is counted up from 0
     /// where the object was given up and begun anew, where a frame shows its turn for the first time, and where an edge was found
-    /// not to be of the object: the turn between poses of different segments is not known. v1 and v2 are the velocity of the
-    /// middle of the object. The column reason says why a frame was not accepted, unstated which values are empty and why, as in --trace. Not available with the adaptive method.
+    /// not to be of the object. Angles go on beyond half a turn and are counted within a segment: the turn between poses of different segments is
+    /// not known. v1 and v2 are the velocity of the middle of the object. The column reason says why a frame was not accepted, unstated which
+    /// values are empty and why, as in --trace. point_x and point_y are where that middle is, the point of the object that v1 and v2 belong to: the
+    /// centroid of what is known of its outline, which need not be at x, y. Not available with the adaptive method.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) trajectory: Option<PathBuf>,
 

@@ -1,6 +1,6 @@
 use std::io::Write as _;
 
-use freeform_motion::tracker::ObjectResult;
+use freeform_motion::tracker::{ObjectResult, Poses};
 use freeform_motion::{Tracker, Warning};
 
 use crate::args::TrackArgs;
@@ -35,6 +35,7 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     let in_doubt = input.may_mistake_one_for_another() && !args.quiet;
     let stated = (following.settings().method(), following.settings().motion());
     let b = input.meaning_of_b(&args.options);
+    let mut poses = Poses::new(following.settings().scale);
     let mut sink = Sink::stdout();
     let mut accepted = 0_u64;
     let mut first_reason = None;
@@ -42,6 +43,7 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
         let event = match event {
             Ok(event) => event,
             Err(left) => {
+                poses.forget(&left.seen.object);
                 if in_doubt {
                     warn_of_two_frames(left.result.clone());
                 }
@@ -57,7 +59,8 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
         }
         accepted += u64::from(observation.is_accepted());
         first_reason = first_reason.take().or_else(|| observation.rejection.clone());
-        write_line(&mut sink, &track_line(observation, stated, &b).map_err(Failure::unusable)?)
+        let pose = poses.take(observation);
+        write_line(&mut sink, &track_line(observation, pose.as_deref(), stated, &b).map_err(Failure::unusable)?)
     })?;
     // A table says it in its rows.
     if in_doubt || input.may_mistake_one_for_another() && !args.quiet {

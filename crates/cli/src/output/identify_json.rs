@@ -6,13 +6,12 @@ use freeform_motion::estimate::{MotionEstimate, ParameterEstimate};
 use freeform_motion::outline_filter::{Ambiguity, DynamicsWeights, PlaneAmbiguity};
 use freeform_motion::outline_io::OriginWarning;
 use freeform_motion::riccati::CameraScale;
-use freeform_motion::tracker::{Method, MotionFamily, NotStated, ObjectPhase, ObjectResult, Observation};
+use freeform_motion::tracker::{MotionFamily, NotStated, ObjectResult};
 use serde::ser::{Serialize, SerializeMap, SerializeStruct, Serializer};
 
 use super::plane_json::{NormalJson, PlanesJson};
 use super::velocity_json::VelocityJson;
 use crate::left_out::LeftOut;
-use crate::seen::Left;
 
 /// The result as one JSON object.
 pub(crate) fn write_identify_json(
@@ -31,56 +30,6 @@ pub(crate) fn write_identify_json(
     let document = Document { schema: "freeform.identify/2", objects, b, left_out, warnings };
     serde_json::to_writer_pretty(&mut *sink, &document)?;
     writeln!(sink)
-}
-
-/// One frame as one line of JSON, without its end.
-pub(crate) fn track_line(
-    observation: &Observation,
-    (method, family): (Method, MotionFamily),
-    b: &MeaningOfB,
-) -> serde_json::Result<String> {
-    let estimate = observation.estimate.as_ref();
-    serde_json::to_string(&TrackLine {
-        schema: "freeform.track/1",
-        object: &observation.object,
-        frame: observation.frame,
-        time: observation.time,
-        phase: observation.phase.map(ObjectPhase::name),
-        accepted: observation.is_accepted(),
-        parameters: observation.parameters().map(|found| {
-            Parameters::new(found, (family, b), &observation.aliases, |name| observation.not_stated(name))
-        }),
-        generator: estimate.and_then(generator_rows),
-        velocity: observation.velocity.as_ref().map(VelocityJson),
-        normal: observation.plane.as_deref().map(NormalJson::from),
-        reason: observation.rejection.as_ref().map(ToString::to_string),
-        ambiguity: ambiguity_json(observation.ambiguity.as_ref(), observation.plane_ambiguity.as_deref()),
-        unstated: Unstated::of(
-            observation.unstated(family),
-            observation.velocity_not_stated().filter(|_| family.has_velocity(method)),
-        ),
-    })
-}
-
-/// The last line of an object of a stream that has left, without its end.
-pub(crate) fn closing_line(Left { seen, result }: &Left, b: &MeaningOfB) -> serde_json::Result<String> {
-    serde_json::to_string(&TrackLine {
-        schema: "freeform.track/1",
-        object: &seen.object,
-        frame: seen.frame,
-        time: seen.time,
-        phase: Some("closed"),
-        accepted: false,
-        parameters: result
-            .parameters()
-            .map(|found| Parameters::new(found, (result.motion, b), &result.aliases, |name| result.not_stated(name))),
-        generator: result.estimate.as_ref().and_then(generator_rows),
-        velocity: result.velocity.as_ref().map(VelocityJson),
-        normal: result.plane.as_deref().map(NormalJson::from),
-        reason: Some("not seen for long, and forgotten".to_owned()),
-        ambiguity: ambiguity_json(result.ambiguity.as_ref(), result.plane_ambiguity.as_deref()),
-        unstated: Unstated::of_result(result),
-    })
 }
 
 #[derive(serde::Serialize)]
@@ -121,34 +70,21 @@ struct PictureJson<'a> {
     reason: &'a str,
 }
 
-#[derive(serde::Serialize)]
-struct TrackLine<'a> {
-    schema: &'static str,
-    object: &'a str,
-    frame: u64,
-    time: Option<f64>,
-    phase: Option<&'static str>,
-    accepted: bool,
-    parameters: Option<Parameters<'a>>,
-    generator: Option<[[f64; 3]; 3]>,
-    velocity: Option<VelocityJson<'a>>,
-    /// Of a plane in space alone.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    normal: Option<NormalJson>,
-    reason: Option<String>,
-    ambiguity: Option<EitherAmbiguity<'a>>,
-    unstated: Unstated,
-}
-
 /// Parameters and velocity that are not stated, by their names, with the word that says why.
-struct Unstated(Vec<(&'static str, NotStated)>);
+pub(super) struct Unstated(Vec<(&'static str, NotStated)>);
 
 impl Unstated {
-    fn of(parameters: Vec<(&'static str, NotStated)>, velocity: Option<NotStated>) -> Self {
+    pub(super) fn of(parameters: Vec<(&'static str, NotStated)>, velocity: Option<NotStated>) -> Self {
         Self(parameters.into_iter().chain(velocity.map(|reason| ("velocity", reason))).collect())
     }
 
-    fn of_result(result: &ObjectResult) -> Self {
+    /// The same, and others after them.
+    pub(super) fn and(mut self, others: impl IntoIterator<Item = (&'static str, NotStated)>) -> Self {
+        self.0.extend(others);
+        self
+    }
+
+    pub(super) fn of_result(result: &ObjectResult) -> Self {
         let velocity = result.velocity_not_stated().filter(|_| result.has_velocity());
         Self::of(result.unstated(), velocity)
     }
@@ -163,19 +99,22 @@ impl Serialize for Unstated {
 /// Turns of an object of the picture, or motions of a plane in space.
 #[derive(serde::Serialize)]
 #[serde(untagged)]
-enum EitherAmbiguity<'a> {
+pub(super) enum EitherAmbiguity<'a> {
     Turns(AmbiguityJson<'a>),
     Planes(Box<PlanesJson<'a>>),
 }
 
-fn ambiguity_json<'a>(turns: Option<&'a Ambiguity>, planes: Option<&'a PlaneAmbiguity>) -> Option<EitherAmbiguity<'a>> {
+pub(super) fn ambiguity_json<'a>(
+    turns: Option<&'a Ambiguity>,
+    planes: Option<&'a PlaneAmbiguity>,
+) -> Option<EitherAmbiguity<'a>> {
     let turns = turns.map(|turns| EitherAmbiguity::Turns(turns.into()));
     turns.or_else(|| planes.map(|planes| EitherAmbiguity::Planes(Box::new(planes.into()))))
 }
 
 /// Turns from one frame to the next that the outlines do not decide between, in degrees, positive where omega is.
 #[derive(serde::Serialize)]
-struct AmbiguityJson<'a> {
+pub(super) struct AmbiguityJson<'a> {
     turn: f64,
     rival_turns: Vec<f64>,
     parameters: &'a [&'static str],
@@ -275,13 +214,13 @@ struct ParameterJson<'a> {
 }
 
 /// An estimate, with the units of its parameters, why a parameter is not stated, and other angular velocities that explain the outlines as well.
-struct Parameters<'a> {
+pub(super) struct Parameters<'a> {
     found: Vec<(ParameterEstimate, &'static str, Option<NotStated>)>,
     aliases: &'a [f64],
 }
 
 impl<'a> Parameters<'a> {
-    fn new(
+    pub(super) fn new(
         found: Vec<ParameterEstimate>,
         (family, b): (MotionFamily, &MeaningOfB),
         aliases: &'a [f64],
@@ -344,7 +283,7 @@ impl Serialize for NoParameters<'_> {
     }
 }
 
-fn generator_rows(estimate: &MotionEstimate) -> Option<[[f64; 3]; 3]> {
+pub(super) fn generator_rows(estimate: &MotionEstimate) -> Option<[[f64; 3]; 3]> {
     let a = estimate.known_generator()?;
     Some([0, 1, 2].map(|row| [a[(row, 0)], a[(row, 1)], a[(row, 2)]]))
 }

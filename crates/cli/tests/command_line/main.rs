@@ -41,6 +41,7 @@ mod support;
 mod tables;
 mod tracing;
 mod track;
+mod track_poses;
 mod trajectory;
 mod void_borders;
 mod whole_files;

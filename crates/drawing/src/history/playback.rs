@@ -8,7 +8,6 @@ use freeform_motion::riccati::map_point;
 use freeform_motion::tracker::{ObjectPhase, Observation};
 use nalgebra::{Matrix3, Point2};
 
-use super::pose_history::present_state;
 use super::thinned::{Kept, Thinned};
 
 /// Most points of an outline in one frame.
@@ -94,7 +93,7 @@ impl Playback {
         if !self.frames.keeps_next() {
             return self.frames.pass();
         }
-        let (state, is_lost) = (present_state(observation), observation.phase == Some(ObjectPhase::Lost));
+        let (state, is_lost) = (observation.present_state(), observation.phase == Some(ObjectPhase::Lost));
         let known = observation.known_outline.as_ref().filter(|_| !is_lost);
         let known = known.map(|known| self.known_in_frame(known, outline, observation));
         let middle = match state {

@@ -1,6 +1,6 @@
 //! Where an object was over time, kept for figures.
-use freeform_motion::estimate::{MotionState, PoseParameter};
-use freeform_motion::tracker::{ContinuousAngle, Observation};
+use freeform_motion::estimate::PoseParameter;
+use freeform_motion::tracker::{Observation, Poses};
 
 use super::thinned::{Kept, Thinned};
 
@@ -12,7 +12,7 @@ const MOST_KEPT: usize = 1000;
 pub(crate) struct PoseHistory {
     samples: Thinned<PoseSample>,
     segment: usize,
-    angles: ContinuousAngle,
+    poses: Poses,
 }
 
 /// Where an object was at one time.
@@ -35,29 +35,22 @@ impl PoseHistory {
         // Nobody knows how far the object has turned between segments.
         if observation.segment != self.segment {
             self.segment = observation.segment;
-            self.angles = ContinuousAngle::default();
             self.samples.break_off();
         }
-        let Some(state) = present_state(observation) else { return self.samples.skip() };
+        let pose = observation.time.zip(self.poses.take(observation));
+        let Some((time, pose)) = pose else { return self.samples.skip() };
         // Of the turns that the outlines leave open none is drawn.
         let is_ambiguous = observation.ambiguity.is_some();
         let mut parameters = Vec::new();
-        let mut pose = state.pose_parameters();
-        self.angles.go_on(state, &mut pose);
         for PoseParameter { name, value, standard_deviation } in pose {
             let is_stated = value.is_finite() && !(is_ambiguous && name == "angle");
             parameters.push(is_stated.then_some([value, standard_deviation]));
         }
-        self.samples.push(PoseSample { time: state.time(), parameters });
+        self.samples.push(PoseSample { time, parameters });
         if self.samples.kept().len() > MOST_KEPT {
             self.samples.halve();
         }
     }
-}
-
-/// The state at the time of the frame; none where it is only that at which a lost object was seen last.
-pub(crate) fn present_state(observation: &Observation) -> Option<&MotionState> {
-    observation.state.as_ref().filter(|state| observation.time == Some(state.time()))
 }
 
 #[cfg(test)]

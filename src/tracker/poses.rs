@@ -1,0 +1,83 @@
+//! The poses of objects as they are stated, one after another.
+use std::collections::HashMap;
+
+use freeform_estimate::{MotionState, PoseParameter};
+use freeform_riccati::CameraScale;
+
+use super::{continuous_angle::ContinuousAngle, observation::Observation};
+
+/// The poses of objects as they are stated, frame after frame: with angles that are [continuous](ContinuousAngle) within each
+/// [segment](Observation::segment) and may exceed half a turn, and in space if a camera scale is given. Memory does not grow with the number of frames.
+///
+/// ```
+/// use freeform_motion::{Tracker, TrackerSettings};
+/// use freeform_motion::outline_io::OutlineFrame;
+/// use freeform_motion::sim_camera::{PaperExperiment, SequenceLength, Settings, Simulator};
+/// use freeform_motion::tracker::Poses;
+///
+/// let (mut tracker, mut poses) = (Tracker::new(TrackerSettings::default())?, Poses::new(None));
+/// let settings = Settings { length: SequenceLength::Frames(120), ..Settings::default() };
+/// let simulator = Simulator::new(PaperExperiment::FLIGHT_BIRD.scene(0.1)?, settings)?;
+/// let mut angle = None;
+/// for (frame, seen) in (0..).zip(simulator.frames()) {
+///     let outline = OutlineFrame { frame, time: seen.time, object: "bird".to_owned(), outline: seen.outline };
+///     angle = poses.take(&tracker.push(&outline)).map(|pose| pose[0]);
+/// }
+/// // It turns by a quarter in a second.
+/// assert!(angle.is_some_and(|angle| angle.name == "angle" && (angle.value - 119.0 / 30.0 * 1.571).abs() < 0.02));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Default)]
+pub struct Poses {
+    scale: Option<CameraScale>,
+    /// By the names of the objects: the segment that each is in, and its angle so far.
+    angles: HashMap<String, (usize, ContinuousAngle)>,
+}
+
+impl Poses {
+    /// Poses of which none has come yet. With a camera scale f/Z0 positions are divided by it.
+    #[must_use]
+    pub fn new(scale: Option<CameraScale>) -> Self {
+        Self { scale, angles: HashMap::new() }
+    }
+
+    /// The pose of an object after a frame, which is its next one; `None` where it is not known then. What the outline does not show is not finite.
+    pub fn take(&mut self, observation: &Observation) -> Option<Vec<PoseParameter>> {
+        Some(self.of_state(&observation.object, observation.segment, observation.present_state()?))
+    }
+
+    /// Forgets an object: if the name comes again, it is that of a new one.
+    pub fn forget(&mut self, object: &str) {
+        self.angles.remove(object);
+    }
+
+    /// The pose of an object in a state, which is its next one.
+    pub(super) fn of_state(&mut self, object: &str, segment: usize, state: &MotionState) -> Vec<PoseParameter> {
+        let mut pose = state.pose_parameters();
+        if !self.angles.contains_key(object) {
+            self.angles.insert(object.to_owned(), (segment, ContinuousAngle::default()));
+        }
+        if let Some((current, angle)) = self.angles.get_mut(object) {
+            // Nobody knows how far the object has turned between segments.
+            if *current != segment {
+                (*current, *angle) = (segment, ContinuousAngle::default());
+            }
+            angle.go_on(state, &mut pose);
+        }
+        if let Some(scale) = self.scale {
+            pose.iter_mut().for_each(|parameter| to_space(parameter, scale));
+        }
+        pose
+    }
+}
+
+/// Changes a number of a pose in the image to that in space: as a generator changes between them, so does a map.
+fn to_space(parameter: &mut PoseParameter, scale: CameraScale) {
+    let PoseParameter { name, value, standard_deviation } = parameter;
+    let factor = match *name {
+        "x" | "y" => 1.0 / scale.value(),
+        "m31" | "m32" => scale.value(),
+        _ => return,
+    };
+    (*value, *standard_deviation) = (*value * factor, *standard_deviation * factor);
+}
