@@ -3,7 +3,10 @@ use freeform_curve_fit::Outline;
 use freeform_estimate::MotionEstimate;
 use freeform_outline_filter::{MotionFilter, Phase};
 
-use super::step::{Step, of_following, unstated_of};
+use super::{
+    result::VELOCITY_NAMES,
+    step::{Step, of_following, unstated_of},
+};
 use crate::rejection::RejectionCause;
 use crate::warning::Warning;
 
@@ -66,6 +69,10 @@ impl FilteredObject {
             let (mut hidden, mut others) = (Vec::new(), Vec::new());
             for (parameter, is_hidden) in unknown.filter(|(p, _)| !ambiguous.contains(&p.name)) {
                 if is_hidden { &mut hidden } else { &mut others }.push(parameter.name);
+            }
+            // It may be known less well than all parameters are: where it is worth stating is judged by the size of the object, not by its distance.
+            if filter.estimate().is_some() && filter.velocity().is_none() && ambiguity.is_none() {
+                if filter.hides_velocity() { &mut hidden } else { &mut others }.extend(VELOCITY_NAMES);
             }
             if !hidden.is_empty() {
                 warnings.push(Warning::NotObservable { parameters: hidden });
