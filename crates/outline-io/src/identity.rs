@@ -2,6 +2,7 @@ use nalgebra::{Point2, Vector2};
 
 use crate::affine_moment_invariants::AffineMomentInvariants;
 use crate::assignment::assign;
+use crate::contacts::{AfterContact, Contacts};
 use crate::picture_error::TraceError;
 use crate::trace::TracedOutline;
 
@@ -206,13 +207,20 @@ pub struct Identities {
     selection: Selection,
     known: Vec<Known>,
     next_name: u64,
+    contacts: Contacts,
 }
 
 impl Identities {
     /// Before the first picture.
     #[must_use]
     pub fn new(selection: Selection) -> Self {
-        Self { selection, known: Vec::new(), next_name: 0 }
+        Self { selection, known: Vec::new(), next_name: 0, contacts: Contacts::default() }
+    }
+
+    /// The first object that may be one which was forgotten while it touched another, if there is any.
+    #[must_use]
+    pub fn after_contact(&self) -> Option<AfterContact> {
+        self.contacts.first_after()
     }
 
     /// How many objects of a picture are needed.
@@ -226,7 +234,9 @@ impl Identities {
     /// No object is where the one followed should be; all objects touch others; no object at all where one is needed; of
     /// [`Selection::Moving`], none that has left its place.
     pub fn assign(&mut self, frame: u64, traced: Vec<TracedOutline>) -> Result<Vec<(u64, TracedOutline)>, TraceError> {
-        self.known.retain(|known| frame.saturating_sub(known.frame) <= PATIENCE + 1);
+        let is_remembered = |known: &Known| frame.saturating_sub(known.frame) <= PATIENCE + 1;
+        self.known.iter().filter(|known| !is_remembered(known)).for_each(|known| self.contacts.forget(known.name));
+        self.known.retain(is_remembered);
         match self.selection {
             Selection::Largest => Ok(traced.into_iter().take(1).map(|traced| (0, traced)).collect()),
             Selection::Nearest => self.nearest(frame, traced).map(|found| vec![(0, found)]),
@@ -273,18 +283,23 @@ impl Identities {
     }
 
     /// What is seen without what several objects are in at once, and how many they are, if any.
-    fn without_touching(&self, frame: u64, mut traced: Vec<TracedOutline>) -> (Vec<TracedOutline>, Option<usize>) {
+    fn without_touching(&mut self, frame: u64, mut traced: Vec<TracedOutline>) -> (Vec<TracedOutline>, Option<usize>) {
         let fits = |known: &Known, traced: &TracedOutline| {
             let difference = known.difference(frame, traced);
             difference.is_near() && difference.is_of_one()
         };
         let apart = |known: &&Known| !traced.iter().any(|traced| fits(known, traced));
-        let unseen: Vec<Point2<f64>> = self.known.iter().filter(apart).map(|known| known.expected(frame)).collect();
+        let unseen: Vec<(u64, Point2<f64>)> =
+            self.known.iter().filter(apart).map(|known| (known.name, known.expected(frame))).collect();
         let mut touching = None;
         traced.retain(|traced| {
             let around = traced.outline.bounding_box();
-            let count = unseen.iter().filter(|place| around.contains(place)).count();
+            let within = || unseen.iter().filter(|(_, place)| around.contains(place));
+            let count = within().count();
             touching = touching.or((count > 1).then_some(count));
+            if count > 1 {
+                within().for_each(|(name, _)| self.contacts.touch(*name));
+            }
             count < 2
         });
         (traced, touching)
@@ -316,6 +331,7 @@ impl Identities {
         for (known, seen) in self.known.iter_mut().zip(seen_as) {
             if let Some(seen) = seen {
                 names[seen] = Some(known.name);
+                self.contacts.see(known.name);
                 known.see(frame, &traced[seen]);
             }
         }
@@ -323,6 +339,7 @@ impl Identities {
             let name = name.unwrap_or_else(|| {
                 let name = self.next_name;
                 self.next_name += 1;
+                self.contacts.name(frame, name);
                 self.known.push(Known::seen(name, frame, &traced));
                 name
             });

@@ -36,6 +36,7 @@ mod choice;
 mod coco;
 mod column;
 mod compressed_video;
+mod contacts;
 mod contrast;
 mod csv_columns;
 mod csv_comments;
@@ -131,6 +132,7 @@ pub use choice::{
     PictureSample, SamplePlan, Tracing, TracingChoice, TracingEvidence, TracingWarning, TracingWay, choose_tracing,
 };
 pub use column::Column;
+pub use contacts::AfterContact;
 pub use contrast::Contrast;
 pub use csv_comments::read_comments;
 pub use csv_reader::OutlineReader;

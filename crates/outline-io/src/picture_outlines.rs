@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use image::GrayImage;
 
 use crate::background::{Background, Difference, RunningMedian};
+use crate::contacts::AfterContact;
 use crate::contrast::Contrast;
 use crate::ground_surface::ground_surface;
 use crate::identity::{Identities, Selection};
@@ -176,6 +177,11 @@ impl<S: Iterator<Item = Result<PictureFrame, PictureError>>> PictureOutlines<S> 
     /// Marks an object as present in a picture, at most the last one, in which it was not traced: it keeps its name.
     pub fn keep(&mut self, name: u64, frame: u64) {
         self.identities.keep(name, frame);
+    }
+
+    /// The first object that may be one which was forgotten while it touched another, if there is any.
+    pub fn after_contact(&self) -> Option<AfterContact> {
+        self.identities.after_contact()
     }
 
     /// The next picture, which the median knows.

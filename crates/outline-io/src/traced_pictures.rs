@@ -1,3 +1,4 @@
+use crate::contacts::AfterContact;
 use crate::frame::OutlineFrame;
 use crate::picture_error::{PictureError, TraceError};
 use crate::picture_outlines::{PictureOutlines, PictureSettings, TracedFrame};
@@ -90,6 +91,11 @@ impl<I: Iterator<Item = Result<PictureFrame, PictureError>>> TracedPictures<I> {
         if let Ok(name) = object.parse() {
             self.outlines.keep(name, frame);
         }
+    }
+
+    /// The first object that may be one which was forgotten while it touched another, if there is any.
+    pub fn after_contact(&self) -> Option<AfterContact> {
+        self.outlines.after_contact()
     }
 
     /// What the settings that were left open have come to so far.
