@@ -89,7 +89,12 @@ pub(crate) fn note(message: &str) {
     say(&format!("note: {message}"));
 }
 
-/// Prints a warning on standard error.
+/// Prints a warning of the options or the input on standard error, which is in no list and says all itself.
 pub(crate) fn warn(message: &str) {
     say(&format!("warning: {message}"));
+}
+
+/// Prints a warning on standard error with the code by which docs/warnings.md lists it.
+pub(crate) fn warn_of(code: &str, message: &str) {
+    say(&format!("warning[{code}]: {message}"));
 }

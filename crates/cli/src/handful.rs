@@ -4,37 +4,66 @@ use std::collections::BTreeMap;
 use freeform_motion::Warning;
 use freeform_motion::tracker::ObjectResult;
 
+use crate::failure::{warn, warn_of};
+
 /// Lines for one object at most.
 const OF_OBJECT: usize = 5;
 
 /// Lines for all objects together at most.
 const OF_ALL: usize = 25;
 
+/// A line of what is told of results.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Line {
+    /// Of the warning that it is, if it is one.
+    code: Option<&'static str>,
+    message: String,
+}
+
+impl Line {
+    fn of_others(message: String) -> Self {
+        Self { code: None, message }
+    }
+
+    /// Prints it on standard error.
+    pub(crate) fn print(&self) {
+        match self.code {
+            Some(code) => warn_of(code, &self.message),
+            None => warn(&self.message),
+        }
+    }
+}
+
 /// What is told of results: the causes first, as their warnings come.
-pub(crate) fn handful(results: &[ObjectResult]) -> Vec<String> {
+pub(crate) fn handful(results: &[ObjectResult]) -> Vec<Line> {
     let mut lines = Vec::new();
     let mut objects = results.iter().filter(|result| !result.warnings.is_empty());
     while let Some(result) = objects.next() {
         let of_object = lines_of(&result.warnings);
         if lines.len() + of_object.len() > OF_ALL {
             let others = 1 + objects.count();
-            lines.push(format!("there are warnings of {others} more object(s); --json lists them"));
+            lines.push(Line::of_others(format!("there are warnings of {others} more object(s); --json lists them")));
             break;
         }
-        lines.extend(of_object.into_iter().map(|line| format!("object {}: {line}", result.object)));
+        let of_object = of_object.into_iter();
+        lines.extend(
+            of_object.map(|line| Line { message: format!("object {}: {}", result.object, line.message), ..line }),
+        );
     }
     lines
 }
 
-fn lines_of(warnings: &[Warning]) -> Vec<String> {
+fn lines_of(warnings: &[Warning]) -> Vec<Line> {
     let told = if warnings.len() > OF_OBJECT { OF_OBJECT - 1 } else { warnings.len() };
     let (told, rest) = warnings.split_at(told);
-    let mut lines: Vec<String> = told.iter().map(ToString::to_string).collect();
+    let of_warning = |warning: &Warning| Line { code: Some(warning.code()), message: warning.to_string() };
+    let mut lines: Vec<Line> = told.iter().map(of_warning).collect();
     if !rest.is_empty() {
         let mut counts = BTreeMap::new();
         rest.iter().for_each(|warning| *counts.entry(warning.code()).or_insert(0) += 1);
         let counts: Vec<String> = counts.iter().map(|(code, count)| format!("{count} {code}")).collect();
-        lines.push(format!("{} more warnings, which --json lists: {}", rest.len(), counts.join(", ")));
+        let others = format!("{} more warnings, which --json lists: {}", rest.len(), counts.join(", "));
+        lines.push(Line::of_others(others));
     }
     lines
 }
@@ -49,11 +78,13 @@ mod tests {
             let restarted = (0..count.saturating_sub(2)).map(|times| Warning::Restarted { times });
             restarted.chain([Warning::Lost { last_known: None }, Warning::Diverged]).take(count).collect()
         };
-        assert_eq!(lines_of(&warnings(0)), [""; 0]);
+        assert!(lines_of(&warnings(0)).is_empty());
         assert_eq!(lines_of(&warnings(5)).len(), 5);
         let many = lines_of(&warnings(8));
         assert_eq!(many.len(), 5);
-        assert_eq!(many[4], "4 more warnings, which --json lists: 1 diverged, 1 lost, 2 restarted");
-        assert_eq!(many[0], Warning::Restarted { times: 0 }.to_string());
+        let others = "4 more warnings, which --json lists: 1 diverged, 1 lost, 2 restarted";
+        assert_eq!(many[4], Line::of_others(others.to_owned()));
+        let first = Warning::Restarted { times: 0 };
+        assert_eq!(many[0], Line { code: Some("restarted"), message: first.to_string() });
     }
 }

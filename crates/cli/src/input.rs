@@ -13,7 +13,7 @@ use freeform_motion::{SimulatedMotion, outline_of_polygon};
 
 use crate::args::{PictureOptions, TrackOptions};
 use crate::awaited::{Awaited, Waiting};
-use crate::failure::{Failure, note, plain, warn};
+use crate::failure::{Failure, note, plain, warn, warn_of};
 use crate::picture_input::{ASSUMED_RATE, PictureInput};
 use crate::progress::Verbosity;
 use crate::seen::Item;
@@ -260,11 +260,11 @@ impl Input {
         format!("{}: {warning} (column warning: {})", self.name, warning.code())
     }
 
-    /// What the table says of its outlines and has not been told.
-    pub(crate) fn news(&mut self) -> Vec<String> {
+    /// What the table says of its outlines and has not been told, with the codes.
+    pub(crate) fn news(&mut self) -> Vec<(OriginWarning, String)> {
         let new = self.told_by_table().without(self.told);
         self.told = self.told.and(new);
-        new.iter().map(|warning| self.of_table(warning)).collect()
+        new.iter().map(|warning| (warning, self.of_table(warning))).collect()
     }
 
     /// Whether two outlines of one name may be of two things.
@@ -287,7 +287,7 @@ impl Input {
     /// Says how pictures are traced, if that was chosen, and what may be wrong with the input.
     pub(crate) fn tell(&mut self) {
         self.pictures().map(PictureInput::notes).unwrap_or_default().iter().for_each(|told| note(told));
-        self.origin_warnings().iter().for_each(|(_, warning)| warn(warning));
+        self.origin_warnings().iter().for_each(|(warning, message)| warn_of(warning.code(), message));
         // Rows that had to be ordered have all been read.
         self.told = self.told.and(self.told_by_table());
         self.pictures().and_then(PictureInput::not_drawn).iter().for_each(|warning| warn(warning));
@@ -296,12 +296,15 @@ impl Input {
     /// Says how the pictures are traced where that was chosen, and whether it is not to be trusted.
     pub(crate) fn tell_tracing(&self) {
         self.pictures().map(PictureInput::notes).unwrap_or_default().iter().for_each(|told| note(told));
-        self.pictures().map(PictureInput::doubts).unwrap_or_default().iter().for_each(|warning| warn(warning));
+        let doubts = self.pictures().map(PictureInput::tracing_warnings).unwrap_or_default();
+        doubts.iter().for_each(|(warning, message)| warn_of(warning.code(), message));
+        self.pictures().and_then(PictureInput::not_drawn).iter().for_each(|warning| warn(warning));
     }
 
     /// Says what was seen to be wrong while the input was read.
     pub(crate) fn tell_in_the_end(&self) {
-        self.pictures().map(PictureInput::closing_remarks).unwrap_or_default().iter().for_each(|warning| warn(warning));
+        let remarks = self.pictures().map(PictureInput::closing_remarks).unwrap_or_default();
+        remarks.iter().for_each(|(warning, message)| warn_of(warning.code(), message));
     }
 
     /// Whether all objects of the last picture have been handed on.

@@ -1,5 +1,5 @@
 //! Pictures that gave no outline.
-use freeform_drawing::PicturesLeftOut;
+use freeform_drawing::{PictureLeftOut, PicturesLeftOut};
 use freeform_motion::tracker::FrameRanges;
 
 use crate::seen::{Missing, MissingKind};
@@ -13,6 +13,8 @@ pub(crate) struct LeftOut {
     pub(crate) count: u64,
     /// Number and reason of the first of them.
     pub(crate) pictures: Vec<(u64, String)>,
+    /// The same as a report lists them.
+    listed: Vec<PictureLeftOut>,
     /// How many of all could be read.
     pub(crate) readable: u64,
 }
@@ -23,12 +25,18 @@ impl LeftOut {
         self.readable += u64::from(missing.seen_in.is_some());
         if self.pictures.len() < PICTURES_KEPT {
             self.pictures.push((missing.frame, missing.reason.clone()));
+            let Missing { frame, file, .. } = missing;
+            self.listed.push(PictureLeftOut {
+                frame: *frame,
+                file: file.clone(),
+                reason: missing.bare_reason().to_owned(),
+            });
         }
     }
 
     /// As a report tells it.
     pub(crate) fn told(&self) -> PicturesLeftOut<'_> {
-        PicturesLeftOut { count: self.count, first: &self.pictures }
+        PicturesLeftOut { count: self.count, first: &self.listed }
     }
 }
 
@@ -82,7 +90,8 @@ mod tests {
 
     fn missing(frame: u64, error: TraceError) -> Missing {
         let reason = format!("frame {frame}: {error}");
-        Missing { frame, reason, hint: Some("look elsewhere"), kind: MissingKind::from(&error), seen_in: None }
+        let (file, hint, kind) = (String::new(), Some("look elsewhere"), MissingKind::from(&error));
+        Missing { frame, file, reason, hint, kind, seen_in: None }
     }
 
     #[test]
@@ -100,12 +109,27 @@ mod tests {
     }
 
     #[test]
+    fn a_report_lists_pictures_by_their_files_numbers_and_reasons_apart() {
+        let mut left_out = LeftOut::default();
+        let at = |reason: &str| Missing {
+            file: "a/film.gif".to_owned(),
+            reason: format!("a/film.gif: {reason}"),
+            ..missing(4, TraceError::NoRing)
+        };
+        ["frame 4: no ring", "the file ends within it"].into_iter().for_each(|reason| left_out.take(&at(reason)));
+        let listed = left_out.told().first.iter().map(|listed| (listed.frame, &*listed.file, &*listed.reason));
+        let expected = [(4, "a/film.gif", "no ring"), (4, "a/film.gif", "the file ends within it")];
+        assert_eq!(listed.collect::<Vec<_>>(), expected);
+        assert_eq!(left_out.pictures[0], (4, "a/film.gif: frame 4: no ring".to_owned()));
+    }
+
+    #[test]
     fn different_answers_of_the_system_are_different_reasons() {
         let mut warnings = MissingWarnings::default();
         let told = [ErrorKind::NotFound, ErrorKind::PermissionDenied, ErrorKind::NotFound].map(|kind| {
             let error = PictureErrorKind::from(Error::from(kind));
             let (reason, kind) = (error.to_string(), MissingKind::from(&error));
-            warnings.take(&Missing { frame: 0, reason, hint: None, kind, seen_in: None })
+            warnings.take(&Missing { frame: 0, file: String::new(), reason, hint: None, kind, seen_in: None })
         });
         assert!(told[0].is_some() && told[1].is_some() && told[2].is_none());
     }

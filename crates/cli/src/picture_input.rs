@@ -222,11 +222,6 @@ impl PictureInput {
         !self.has_labels() && (self.is_tracing_in_doubt() || self.frame_count().is_none_or(|count| count > 2))
     }
 
-    /// Why the way of tracing is not to be trusted.
-    pub(crate) fn doubts(&self) -> Vec<String> {
-        self.tracing_warnings().into_iter().map(|(_, warning)| warning).chain(self.not_drawn()).collect()
-    }
-
     /// That the ways of tracing that were asked for are not drawn.
     pub(crate) fn not_drawn(&self) -> Option<String> {
         let drawn = self.options.candidates.as_deref().filter(|_| self.chosen.is_none());
@@ -304,12 +299,13 @@ impl PictureInput {
         match traced {
             Err(error) => {
                 let (reason, kind) = (described(&error, &self.inputs), MissingKind::from(&error.kind));
-                self.waiting.push_back(Item::Gap(Missing { frame, reason, hint: None, kind, seen_in: None }));
+                let missing = Missing { frame, file: error.file, reason, hint: None, kind, seen_in: None };
+                self.waiting.push_back(Item::Gap(missing));
             }
             Ok(TracedPicture { source, file, outlines: Err(error) }) => {
                 let reason = format!("{file}: frame {}: {error}", source.frame);
                 let (hint, kind) = (hint(&error, &self.options), MissingKind::from(&error));
-                let missing = Missing { frame: source.frame, reason, hint, kind, seen_in: Some(source) };
+                let missing = Missing { frame: source.frame, file, reason, hint, kind, seen_in: Some(source) };
                 self.waiting.push_back(Item::Gap(missing));
             }
             Ok(TracedPicture { source, outlines: Ok(outlines), .. }) => {

@@ -1,9 +1,10 @@
 use std::io::{IsTerminal as _, stderr, stdout};
 use std::time::Duration;
 
+use freeform_motion::outline_io::OriginWarning;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::failure::warn;
+use crate::failure::warn_of;
 
 /// Whether standard output is a terminal: a bar would stand in the lines that are printed there meanwhile, and they show how
 /// far the work has come.
@@ -81,8 +82,8 @@ impl Progress {
     }
 
     /// Warns of all of these.
-    pub(crate) fn warn_of(&self, told: &[String]) {
-        told.iter().for_each(|told| self.pause(|| warn(told)));
+    pub(crate) fn warn_of(&self, told: &[(OriginWarning, String)]) {
+        told.iter().for_each(|(warning, message)| self.pause(|| warn_of(warning.code(), message)));
     }
 
     /// Lets something be printed on the terminal.

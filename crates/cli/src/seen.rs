@@ -23,6 +23,8 @@ pub(crate) struct Left {
 pub(crate) struct Missing {
     /// Its number in the sequence.
     pub(crate) frame: u64,
+    /// Name of its file, with which the reason begins.
+    pub(crate) file: String,
     pub(crate) reason: String,
     /// Advice, if there is any.
     pub(crate) hint: Option<&'static str>,
@@ -63,6 +65,13 @@ impl Missing {
     /// The reason, with advice.
     pub(crate) fn advice(&self) -> String {
         self.hint.map_or_else(|| self.reason.clone(), |hint| format!("{}; {hint}", self.reason))
+    }
+
+    /// The reason without the name of the file and the number of the frame.
+    pub(crate) fn bare_reason(&self) -> &str {
+        let (file, frame) = (format!("{}: ", self.file), format!("frame {}: ", self.frame));
+        let reason = self.reason.strip_prefix(&file).unwrap_or(&self.reason);
+        reason.strip_prefix(&frame).unwrap_or(reason)
     }
 
     /// The failure if no other picture gave an outline.

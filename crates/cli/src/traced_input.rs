@@ -1,6 +1,7 @@
 //! Pictures as they are traced: by their grey values, or label by label.
 use freeform_motion::outline_io::{
-    LabelPictures, PictureError, PictureSequence, TraceSettings, TracedPicture, TracedPictures, TracingSummary,
+    AfterContact, LabelPictures, PictureError, PictureSequence, TraceSettings, TracedPicture, TracedPictures,
+    TracingSummary,
 };
 
 /// The pictures of an input, one after the other.
@@ -49,6 +50,14 @@ impl Traced {
     pub(crate) fn better_pixel_aspect(&self) -> Option<f64> {
         match self {
             Self::Greys(traced) => traced.better_pixel_aspect(),
+            Self::Labels(_) => None,
+        }
+    }
+
+    /// The first object that may be one which was forgotten while it touched another, if there is any.
+    pub(crate) fn after_contact(&self) -> Option<AfterContact> {
+        match self {
+            Self::Greys(traced) => traced.after_contact(),
             Self::Labels(_) => None,
         }
     }

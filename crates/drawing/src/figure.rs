@@ -21,6 +21,8 @@ pub enum Look {
     Crosses,
     /// Lines over the whole height, for times at which something was the case; the y axis knows nothing of them.
     Marks,
+    /// Pale areas over the whole height, each from the first to the last of its points; the y axis knows nothing of them.
+    Spans,
     /// Smaller dots, for many points in a small panel.
     FineDots,
     /// A thin grey line, for what is only there for comparison.

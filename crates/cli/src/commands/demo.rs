@@ -16,7 +16,7 @@ use super::listed_settings::{fit_settings, settings, version};
 use super::simulate::write_sequence;
 use crate::args::{DemoArgs, DynamicsChoice, IdentifyMethod, MotionChoice, PerspectiveArgs, TrackOptions};
 use crate::command_line::command_line;
-use crate::failure::{Failure, file_failure, plain, warn};
+use crate::failure::{Failure, file_failure, plain, warn_of};
 use crate::output::{Sink, WholeFile, write_identify_table};
 use crate::overlay::curves;
 
@@ -187,7 +187,7 @@ impl Identification {
         WholeFile::write(figure, &parameter_figure(&histories, options.motion.family(), Some(truth), &b))?;
         let results = tracker.results();
         for warning in results.iter().flat_map(|result| &result.warnings) {
-            warn(&format!("{} method: {warning}", tracker.settings().method()));
+            warn_of(warning.code(), &format!("{} method: {warning}", tracker.settings().method()));
         }
         Ok(Found { options, results, histories })
     }

@@ -10,8 +10,8 @@ use super::listed_settings::{settings, version};
 use crate::args::{DynamicsChoice, IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionChoice};
 use crate::awaited::Waiting;
 use crate::command_line::command_line;
-use crate::failure::{Failure, warn};
-use crate::handful::handful;
+use crate::failure::{Failure, warn, warn_of};
+use crate::handful::{Line, handful};
 use crate::hints::Hints;
 use crate::input::Input;
 use crate::interrupt;
@@ -62,6 +62,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
             }
             Event::Gap(missing) => {
                 left_out.take(missing);
+                missing.seen_in.iter().for_each(|seen| files.histories.pass(seen.time));
                 Ok(())
             }
         }
@@ -205,7 +206,7 @@ impl<'a> Outcome<'a> {
             return Ok(());
         }
         if !self.args.quiet {
-            handful(&self.results).iter().for_each(|warning| warn(warning));
+            handful(&self.results).iter().for_each(Line::print);
         }
         let Self { args, results, b, .. } = self;
         let mut sink = Sink::stdout();
@@ -253,7 +254,7 @@ impl<'a> Outcome<'a> {
     fn warn_of_order(&self) {
         for result in self.results.iter().filter(|_| !self.args.quiet) {
             let order = result.warnings.iter().filter(|warning| matches!(warning, Warning::PointsOutOfOrder { .. }));
-            order.for_each(|warning| warn(&format!("object {}: {warning}", result.object)));
+            order.for_each(|warning| warn_of(warning.code(), &format!("object {}: {warning}", result.object)));
         }
     }
 }

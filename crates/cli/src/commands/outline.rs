@@ -8,11 +8,12 @@ use freeform_motion::outline_io::{
 use super::simulate::SequenceError;
 use crate::args::OutlineArgs;
 use crate::awaited::Waiting;
-use crate::failure::{Failure, warn};
+use crate::failure::{Failure, note, warn};
 use crate::input::Input;
 use crate::interrupt;
 use crate::left_out::MissingWarnings;
 use crate::output::{DrawnPictures, Sink, refuse_overwriting};
+use crate::picture_input::PictureInput;
 use crate::progress::{Progress, Verbosity};
 use crate::seen::{Item, Missing};
 
@@ -99,6 +100,8 @@ fn trace_all(args: &OutlineArgs, mut input: Input, sink: &mut Sink) -> Result<Tr
     }
     if !args.quiet {
         progress.pause(|| input.tell_in_the_end());
+        let of_contact = input.pictures().and_then(PictureInput::note_of_contact);
+        of_contact.iter().for_each(|told| progress.pause(|| note(told)));
     }
     warnings.finish().filter(|_| !args.quiet).for_each(|warning| progress.pause(|| warn(&warning)));
     drawings.map_or(Ok(()), Drawings::finish)?;

@@ -9,7 +9,7 @@ use nalgebra::Projective2;
 
 use crate::args::RectifyArgs;
 use crate::awaited::Waiting;
-use crate::failure::{Failure, warn};
+use crate::failure::{Failure, warn, warn_of};
 use crate::input::Input;
 use crate::left_out::MissingWarnings;
 use crate::output::{Sink, refuse_overwriting, refuse_standard_output};
@@ -59,7 +59,7 @@ fn of_outline(args: &RectifyArgs, known: &Path) -> Result<(Projective2<f64>, Str
     input.tell_tracing();
     let (mut seen, mut object, mut warnings) = (Vec::<Outline>::new(), None::<String>, MissingWarnings::default());
     while let Some(item) = input.next() {
-        input.news().iter().for_each(|told| warn(told));
+        input.news().iter().for_each(|(warning, message)| warn_of(warning.code(), message));
         match item? {
             Item::Outline(frame, _) => {
                 let first = object.get_or_insert_with(|| frame.object.clone());

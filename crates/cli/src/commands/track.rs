@@ -5,7 +5,7 @@ use freeform_motion::{Tracker, Warning};
 
 use crate::args::TrackArgs;
 use crate::awaited::Waiting;
-use crate::failure::{Failure, warn};
+use crate::failure::{Failure, warn_of};
 use crate::input::Input;
 use crate::interrupt;
 use crate::output::{Sink, closing_line, refuse_overwriting, refuse_standard_output, track_line};
@@ -55,7 +55,7 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
         }
         let Event::Object(observation, _) = event else { return Ok(()) };
         if let Some(warning) = observation.warning.as_ref().filter(|_| !args.quiet) {
-            warn(&format!("object {}: {warning}", observation.object));
+            warn_of(warning.code(), &format!("object {}: {warning}", observation.object));
         }
         accepted += u64::from(observation.is_accepted());
         first_reason = first_reason.take().or_else(|| observation.rejection.clone());
@@ -85,7 +85,7 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
 fn warn_of_two_frames(result: ObjectResult) {
     let result = result.of_doubtful_outlines();
     if result.warnings.contains(&Warning::OfTwoFrames) {
-        warn(&format!("object {}: {}", result.object, Warning::OfTwoFrames));
+        warn_of(Warning::OfTwoFrames.code(), &format!("object {}: {}", result.object, Warning::OfTwoFrames));
     }
 }
 

@@ -291,6 +291,7 @@ pub(super) fn generator_rows(estimate: &MotionEstimate) -> Option<[[f64; 3]; 3]>
 #[cfg(test)]
 mod tests {
     use freeform_motion::riccati::MotionModel;
+    use freeform_motion::tracker::Method;
     use serde_json::{Value, json};
 
     use super::*;

@@ -1,18 +1,23 @@
 //! What may be wrong with how pictures are read and traced.
-use freeform_motion::outline_io::OriginWarning;
+use freeform_motion::outline_io::{AfterContact, OriginWarning};
 
 use super::{ASSUMED_RATE, PictureInput};
 use crate::label_choice::label_warnings;
 
 impl PictureInput {
-    /// What is to be said after all have been read: of the labels, or of what the outlines say of the pixels.
-    pub(crate) fn closing_remarks(&self) -> Vec<String> {
-        let of_labels: Vec<String> = self.label_warnings().into_iter().map(|(_, warning)| warning).collect();
-        if of_labels.is_empty() {
-            self.warning_of_aspect().map(|(_, warning)| warning).into_iter().collect()
-        } else {
-            of_labels
-        }
+    /// What is to be said after all have been read: of the labels, or of what the outlines say of the pixels, with the codes.
+    pub(crate) fn closing_remarks(&self) -> Vec<(OriginWarning, String)> {
+        let of_labels = self.label_warnings();
+        if of_labels.is_empty() { self.warning_of_aspect().into_iter().collect() } else { of_labels }
+    }
+
+    /// What to do about an object that has another number after it has touched another one.
+    pub(crate) fn note_of_contact(&self) -> Option<String> {
+        let AfterContact { frame, name, forgotten } = self.traced.after_contact()?;
+        Some(format!(
+            "object {name}, new in frame {frame}, may be object {forgotten}, by itself or with what it touched for long: 'freeform \
+             identify' of the pictures themselves looks for its edges meanwhile, so that it may keep its number"
+        ))
     }
 
     /// What is wrong with the labels of masks read so far, with the codes.
@@ -31,7 +36,7 @@ impl PictureInput {
     }
 
     /// Why the way of tracing is not to be trusted, with the codes.
-    pub(super) fn tracing_warnings(&self) -> Vec<(OriginWarning, String)> {
+    pub(crate) fn tracing_warnings(&self) -> Vec<(OriginWarning, String)> {
         let drawn = self.options.candidates.as_deref();
         self.chosen.iter().flat_map(|chosen| chosen.warnings(drawn)).collect()
     }

@@ -2,6 +2,7 @@
 mod adaptive_study;
 mod bad_input;
 mod browser;
+mod contacts;
 mod drawings;
 mod evaluate;
 #[cfg(target_os = "linux")]
@@ -27,6 +28,7 @@ mod pears;
 mod picture_drawings;
 mod picture_input;
 mod picture_results;
+mod pixel_aspect;
 mod plane;
 mod projective;
 mod real_pictures;
@@ -44,4 +46,5 @@ mod track;
 mod track_poses;
 mod trajectory;
 mod void_borders;
+mod warning_codes;
 mod whole_files;

@@ -159,7 +159,7 @@ fn files_named_in_another_order_than_their_numbers_are_warned_of_and_a_quoted_pa
     let in_order = named.join(" ");
     named.sort();
     let told = format!(
-        "freeform: warning: {frames}/11.png is taken before {frames}/2.png, in the order in which the files are named"
+        "freeform: warning[files_out_of_order]: {frames}/11.png is taken before {frames}/2.png, in the order in which the files are named"
     );
     for command in ["identify", "track", "outline"] {
         let errors =

@@ -71,7 +71,7 @@ fn without_a_motion_files_hold_what_is_known_or_are_said_not_to_be_written() {
     assert_eq!(names(&base), ["frames", "poses.csv", "trace.csv"]);
     let trace = std::fs::read_to_string(format!("{base}/trace.csv")).expect("a trace");
     let all = "omega unknown; b1 unknown; b2 unknown; v1 unknown; v2 unknown";
-    assert_eq!(trace.lines().nth(1), Some(format!("0,0,0,acquiring,true,,,,,,,,,,,,{all}").as_str()));
+    assert_eq!(trace.lines().nth(1), Some(format!("0,0,0,acquiring,true,,,,,,,,,,,,{all},,").as_str()));
 
     let bare = tempfile::tempdir().expect("a folder");
     let outputs = outputs.replace(&base, bare.path().to_str().expect("UTF-8"));

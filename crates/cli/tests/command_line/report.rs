@@ -182,3 +182,31 @@ fn bands_are_told_of_the_method_that_has_them_and_the_width_of_the_picture_has_i
     succeed(&format!("identify {frames} --light --fps 30 --quiet --report {base}/report.html"), "");
     assert!(std::fs::read_to_string(format!("{base}/report.html")).expect("the report").contains(" pixels wide."));
 }
+
+#[test]
+fn figures_go_on_to_the_end_of_the_recording_and_are_grey_where_nothing_is_stated() {
+    // One object is there for half a second, the other one for two.
+    let (short, long) = (sequence(""), sequence("--seconds 2 --shape van"));
+    let mut csv = "frame,time,x,y,object\n".to_owned();
+    for frame in 0..60 {
+        for (rows, name) in [(&short, "a"), (&long, "b")] {
+            let of_frame = rows.lines().filter(|row| row.starts_with(&format!("{frame},")));
+            of_frame.for_each(|row| csv.push_str(&format!("{row},{name}\n")));
+        }
+    }
+    let page = report(&csv, "");
+    let [_, of_a, of_b] = page.split("<h2>Object ").collect::<Vec<_>>()[..3] else { panic!("two objects") };
+    for heading in ["Where it was", "How it moved", "How well that is known"] {
+        let section = |of: &str| {
+            let figures = of.split(&format!("<h3>{heading}</h3>")).nth(1).and_then(|rest| rest.split("<h3>").next());
+            figures.expect("a section").to_owned()
+        };
+        let of_a = section(of_a);
+        assert_eq!(of_a.matches("not stated</text>").count(), of_a.matches("<svg").count(), "{heading}");
+        let times: Vec<&str> =
+            of_a.split("tick middle").skip(1).filter_map(|rest| rest.split(['>', '<']).nth(1)).collect();
+        assert!(times.contains(&"1.5"), "the axis of a goes on to two seconds: {times:?}");
+        assert!(!section(of_b).contains("not stated</text>"), "{heading}");
+    }
+    assert!(of_a.contains("rms (lengths)"), "in the unit of the file");
+}

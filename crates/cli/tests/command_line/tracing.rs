@@ -234,7 +234,8 @@ fn changes_beside_what_rests_are_warned_of_by_a_code() {
     }
     let output = run(&format!("identify {} --fps 30 --json", frames.display()), "");
     assert!(
-        stderr(&output).contains("warning: what is traced rests, and something else changes in 6 of 12"),
+        stderr(&output)
+            .contains("warning[moves_beside_rest]: what is traced rests, and something else changes in 6 of 12"),
         "{}",
         stderr(&output)
     );

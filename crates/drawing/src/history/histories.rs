@@ -27,6 +27,8 @@ pub(crate) struct History {
     pub(crate) object: String,
     /// Time of the first frame in seconds.
     pub(crate) start: Option<f64>,
+    /// Time of the last frame of the recording in seconds, whether it shows the object or not.
+    pub(crate) end: Option<f64>,
     /// Time in seconds and what was known then, if anything was.
     pub(crate) estimates: Vec<(f64, Option<Vec<ParameterEstimate>>)>,
     /// Time in seconds and root mean square residual, of frames that were used.
@@ -60,6 +62,7 @@ impl History {
         Self {
             object,
             start: None,
+            end: None,
             estimates,
             residuals,
             innovations,
@@ -80,6 +83,8 @@ pub struct Histories {
     pub(crate) list: Vec<History>,
     purpose: Purpose,
     curves: CurveFitter,
+    /// Time of the last frame so far in seconds.
+    end: Option<f64>,
     /// By their names.
     positions: HashMap<String, usize>,
 }
@@ -88,7 +93,7 @@ impl Histories {
     /// Empty histories for a purpose, with curves from `curves`.
     #[must_use]
     pub fn new(purpose: Purpose, curves: CurveFitter) -> Self {
-        Self { list: Vec::new(), purpose, curves, positions: HashMap::new() }
+        Self { list: Vec::new(), purpose, curves, end: None, positions: HashMap::new() }
     }
 
     /// The history of an object, if it has one.
@@ -104,8 +109,14 @@ impl Histories {
             .then(|| format!("figures are drawn of the first {drawn} of {objects} objects"))
     }
 
+    /// Takes note of a frame at a time in seconds, in which no object may have been seen.
+    pub fn pass(&mut self, time: f64) {
+        self.end = Some(self.end.map_or(time, |end| end.max(time)));
+    }
+
     /// Adds what a frame of an object gave, with its outline, if it has one.
     pub fn take(&mut self, observation: &Observation, frame: Option<&OutlineFrame>) {
+        observation.time.into_iter().for_each(|time| self.pass(time));
         let position = match self.positions.get(&observation.object) {
             Some(position) => *position,
             None if self.list.len() == MOST_DRAWN => return,
@@ -150,8 +161,9 @@ impl Histories {
         history
     }
 
-    /// After the last frame: keeps no more of the objects that are played than there is room for in a page.
+    /// After the last frame: figures go on to that, and no more is kept of the objects that are played than there is room for in a page.
     pub fn close(&mut self) {
+        self.list.iter_mut().for_each(|history| history.end = self.end);
         let most = POINTS_PLAYED / self.list.len().clamp(1, OBJECTS_PLAYED);
         self.list
             .iter_mut()

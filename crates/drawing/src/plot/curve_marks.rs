@@ -17,6 +17,7 @@ pub(super) const fn class(look: Look) -> &'static str {
         Look::Dots => "dots",
         Look::Crosses => "crosses",
         Look::Marks => SOLID[1],
+        Look::Spans => "spans",
     }
 }
 
@@ -31,6 +32,22 @@ pub(super) fn crosses(pixels: &[[f64; 2]]) -> String {
 
 pub(super) fn marks(pixels: &[[f64; 2]], from: f64, to: f64) -> String {
     pixels.iter().map(|[x, _]| format!("M{x:.2} {from:.2}V{to:.2}")).collect()
+}
+
+/// How a curve of a look is filled beside what its class says; a style sheet goes before it.
+pub(super) const fn fill(look: Look) -> &'static str {
+    match look {
+        Look::Spans => r##" fill="#777" fill-opacity=".16""##,
+        _ => "",
+    }
+}
+
+/// The whole height, from the first to the last of some points.
+pub(super) fn span(pixels: &[[f64; 2]], from: f64, to: f64) -> String {
+    let ends = pixels.first().zip(pixels.last());
+    ends.map_or_else(String::new, |([left, _], [right, _])| {
+        format!("M{left:.2} {from:.2}H{right:.2}V{to:.2}H{left:.2}Z")
+    })
 }
 
 /// Half the width of the mark of a single value, and of its band, in pixels.

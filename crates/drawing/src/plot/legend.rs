@@ -2,7 +2,7 @@ use std::fmt::Write as _;
 
 use crate::figure::{Curve, Look};
 
-use super::curve_marks::{class, crosses, dots, marks};
+use super::curve_marks::{class, crosses, dots, fill, marks};
 use super::text::{escape, text_width};
 
 /// Height of a row of the legend, in pixels.
@@ -57,9 +57,9 @@ pub(super) fn draw_legend_row(svg: &mut String, curves: &[&Curve], mut left: f64
     for curve in curves {
         let (class, right) = (class(curve.look), left + 22.0);
         let _ = match curve.look {
-            Look::Band => {
-                let top = middle - 4.0;
-                writeln!(svg, r#"<rect class="{class}" x="{left:.1}" y="{top:.1}" width="22" height="8"/>"#)
+            Look::Band | Look::Spans => {
+                let (top, fill) = (middle - 4.0, fill(curve.look));
+                writeln!(svg, r#"<rect class="{class}"{fill} x="{left:.1}" y="{top:.1}" width="22" height="8"/>"#)
             }
             Look::Dots => writeln!(svg, r#"<path class="{class}" d="{}"/>"#, dots(&[[left + 11.0, middle]])),
             Look::FineDots => {

@@ -2,7 +2,7 @@ use std::fmt::Write as _;
 
 use crate::figure::{Curve, Look, Panel};
 
-use super::curve_marks::{bar, class, crosses, dots, marks, ring};
+use super::curve_marks::{bar, class, crosses, dots, fill, marks, ring, span};
 use super::legend::{LEGEND_ROW, draw_legend_row, legend_rows};
 use super::text::{escape, text_width};
 use super::ticks::Ticks;
@@ -173,7 +173,7 @@ impl<'a> PanelSvg<'a> {
             return (low, high);
         }
         let is_logarithmic = axis == 1 && self.0.y_logarithmic;
-        let drawn = self.0.curves.iter().filter(|curve| axis == 0 || curve.look != Look::Marks);
+        let drawn = self.0.curves.iter().filter(|curve| axis == 0 || !matches!(curve.look, Look::Marks | Look::Spans));
         let points = drawn.flat_map(|curve| curve.runs.iter().flatten());
         let ends = [self.0.x_from, self.0.x_to].into_iter().flatten().filter(|_| axis == 0);
         let values = points.map(|point| point[axis]).chain(ends).filter(|value| value.is_finite());
@@ -211,8 +211,10 @@ impl<'a> PanelSvg<'a> {
 fn draw_curve(svg: &mut String, curve: &Curve, x: &Axis, y: &Axis) {
     let mut path = String::new();
     for run in &curve.runs {
-        let can_be_drawn =
-            |point: &&[f64; 2]| point.iter().all(|value| value.is_finite()) && !(y.logarithmic && point[1] <= 0.0);
+        let has_no_height = curve.look == Look::Spans;
+        let can_be_drawn = |[x, y_value]: &&[f64; 2]| {
+            x.is_finite() && (has_no_height || y_value.is_finite() && !(y.logarithmic && *y_value <= 0.0))
+        };
         let finite = run.iter().filter(can_be_drawn);
         let pixels: Vec<[f64; 2]> = finite.map(|point| [x.pixel(point[0]), y.pixel(point[1])]).collect();
         path.push_str(&match curve.look {
@@ -229,10 +231,11 @@ fn draw_curve(svg: &mut String, curve: &Curve, x: &Axis, y: &Axis) {
             Look::Dots | Look::FineDots => dots(&pixels),
             Look::Crosses => crosses(&pixels),
             Look::Marks => marks(&pixels, y.from, y.to),
+            Look::Spans => span(&pixels, y.from, y.to),
         });
     }
     if !path.is_empty() {
-        let _ = writeln!(svg, r#"<path class="{}" d="{path}"/>"#, class(curve.look));
+        let _ = writeln!(svg, r#"<path class="{}"{} d="{path}"/>"#, class(curve.look), fill(curve.look));
     }
 }
 
@@ -282,6 +285,23 @@ mod tests {
         let band = Curve { name: String::new(), look: Look::Band, runs: vec![vec![[1.0, 0.5], [1.0, 1.5]]] };
         draw_curve(&mut svg, &band, &axis(0.0, 100.0), &axis(100.0, 0.0));
         assert!(svg.contains("M48.00 75.00H52.00V25.00H48.00Z"), "{svg}");
+    }
+
+    #[test]
+    fn spans_are_as_high_as_the_panel_whatever_their_values_and_the_axis_knows_nothing_of_them() {
+        let axis = |from, to, logarithmic| Axis { low: 0.5, high: 2.5, from, to, logarithmic };
+        let spans = Curve { name: "none".to_owned(), look: Look::Spans, runs: vec![vec![[1.0, 0.0], [2.0, 0.0]]] };
+        let mut svg = String::new();
+        draw_curve(&mut svg, &spans, &axis(0.0, 100.0, false), &axis(100.0, 0.0, true));
+        assert!(
+            svg.contains("class=\"spans\" fill=\"#777\" fill-opacity=\".16\" d=\"M25.00 100.00H75.00V0.00H25.00Z\""),
+            "{svg}"
+        );
+        let mut with_line = panel(&[3.0, 4.0]);
+        let before = PanelSvg(&with_line).range(1, 0.06);
+        with_line.curves.push(spans);
+        assert_eq!(PanelSvg(&with_line).range(1, 0.06), before);
+        assert_eq!(PanelSvg(&with_line).range(0, 0.0), (0.0, 2.0));
     }
 
     #[test]

@@ -19,6 +19,10 @@ const RANGES_OF_MOST: f64 = 8.0;
 /// Room above and below the range of most values, as a share of it.
 const ROOM_AROUND_MOST: f64 = 0.5;
 
+/// Shortest time at which nothing is stated that is marked in a figure, as a share of its time: the first frames of a recording, which never tell
+/// a motion, need no mark.
+const SHORTEST_SPAN: f64 = 0.05;
+
 /// What is seen around the points, as a share of their extent.
 const SURROUNDINGS: f64 = 0.15;
 
@@ -52,11 +56,11 @@ pub fn fit_figure(drawn: &[(FittedOutline, Outline)]) -> String {
         let up_to = if drawn.len() > 1 { "up to " } else { "" };
         format!("Frame {} at {time} s, degree {degree}, residual {up_to}{largest}", fitted.frame)
     });
-    stacked_svg(&[fit_panel(title, drawn)], 640.0, 640.0)
+    stacked_svg(&[fit_panel(title, drawn, "image length")], 640.0, 640.0)
 }
 
-/// Outlines with their fitted curves and related points, in one pair of axes.
-pub(crate) fn fit_panel(title: String, drawn: &[(FittedOutline, Outline)]) -> Panel {
+/// Outlines with their fitted curves and related points, in one pair of axes, in a unit of length.
+pub(crate) fn fit_panel(title: String, drawn: &[(FittedOutline, Outline)], unit: &str) -> Panel {
     let xy = |p: &Point2<f64>| [p.x, p.y];
     let (mut points, mut curves, mut beside, mut related) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut outside = 0;
@@ -90,8 +94,8 @@ pub(crate) fn fit_panel(title: String, drawn: &[(FittedOutline, Outline)]) -> Pa
     }
     Panel {
         title,
-        x_label: "x (image length)".to_owned(),
-        y_label: "y (image length)".to_owned(),
+        x_label: format!("x ({unit})"),
+        y_label: format!("y ({unit})"),
         curves,
         view: view.map(|area| [xy(&area.low), xy(&area.high)]),
         ..Panel::default()
@@ -132,6 +136,9 @@ pub(crate) fn parameter_panels(
                 let runs = vec![vec![[first, truth[index]], [last, truth[index]]]];
                 curves.push(Curve { name: "true value".to_owned(), look: Look::Truth, runs });
             }
+            let line = curves.iter().find(|curve| curve.look == Look::Line);
+            let spans = line.and_then(|line| spans_without(&line.runs, history.start.zip(history.end)?));
+            curves.extend(spans);
             Panel {
                 title: format!("{prefix}{}{note}", meaning(name)),
                 x_label: "time (s)".to_owned(),
@@ -139,6 +146,7 @@ pub(crate) fn parameter_panels(
                 curves,
                 y_limits: limits,
                 x_from: history.start,
+                x_to: history.end,
                 ..Panel::default()
             }
         })
@@ -147,9 +155,10 @@ pub(crate) fn parameter_panels(
 
 /// How well the frames of one object fit, one panel for each measure that its method gives. Rejected frames, which have no
 /// value that others could be held against, are marked at their times.
-pub(crate) fn residual_panels(history: &History) -> Vec<Panel> {
+pub(crate) fn residual_panels(history: &History, b: &MeaningOfB) -> Vec<Panel> {
+    let rms = format!("rms ({})", b.length_unit());
     let measures = [
-        ("Residual of the points", "rms (image length)", &history.residuals),
+        ("Residual of the points", rms.as_str(), &history.residuals),
         ("Innovation of the motion", "squared, in units of its variance", &history.innovations),
     ];
     let times = history.rejected.iter().filter_map(|(_, time)| *time);
@@ -165,6 +174,7 @@ pub(crate) fn residual_panels(history: &History) -> Vec<Panel> {
                 Curve { name: "rejected frames".to_owned(), look: Look::Marks, runs: vec![rejected.clone()] },
             ],
             x_from: history.start,
+            x_to: history.end,
             ..Panel::default()
         })
         .collect()
@@ -215,6 +225,19 @@ impl History {
     }
 }
 
+/// The times between a first and a last one at which a line does not run, as pale areas; none where all of them are too short to be seen as such.
+pub(super) fn spans_without(line: &[Vec<[f64; 2]>], (first, last): (f64, f64)) -> Option<Curve> {
+    let ends = line.iter().filter_map(|run| Some((run.first()?[0], run.last()?[0])));
+    let (mut from, mut runs) = (first, Vec::new());
+    for (begins, ends) in ends.chain([(last, last)]) {
+        if begins - from > SHORTEST_SPAN * (last - first) {
+            runs.push(vec![[from, 0.0], [begins, 0.0]]);
+        }
+        from = from.max(ends);
+    }
+    (!runs.is_empty()).then(|| Curve { name: "not stated".to_owned(), look: Look::Spans, runs })
+}
+
 /// The y axis of a parameter where few of its values and band edges would hide how the others go: the range of most of them, and a true value.
 fn limits_of_most(curves: &[Curve], truth: Option<f64>) -> Option<[f64; 2]> {
     let points = curves.iter().flat_map(|curve| curve.runs.iter().flatten()).map(|point| point[1]);
@@ -260,6 +283,32 @@ mod tests {
         assert_eq!((lengths(&curves[0]), lengths(&curves[1])), (vec![2, 4, 6], vec![1, 2, 3]));
         assert_eq!(lengths(&history.curves(1)[1]), [4, 3]);
         assert_eq!(history.time_range(), Some((1.0, 8.0)));
+    }
+
+    #[test]
+    fn the_time_goes_on_to_the_end_of_the_recording_and_what_is_not_stated_is_marked() {
+        let estimate = MotionEstimate::new(MotionModel::Rigid, &[1.0, 2.0, 3.0], Some(&[0.1, 0.1, 0.1]));
+        let estimates = (0..=50).map(|frame| {
+            // Not in the first frame, in some in the middle, and since the object was lost.
+            let is_known = (1..20).contains(&frame) || (30..40).contains(&frame);
+            (f64::from(frame), is_known.then(|| estimate.parameters().collect()))
+        });
+        let history = History {
+            estimates: estimates.collect(),
+            start: Some(0.0),
+            end: Some(80.0),
+            ..History::of("a".to_owned())
+        };
+        let panel =
+            parameter_panels(&history, "", MotionModel::Rigid.into(), None, &MeaningOfB::default()).swap_remove(0);
+        assert_eq!((panel.x_from, panel.x_to), (Some(0.0), Some(80.0)));
+        let spans = panel.curves.iter().find(|curve| curve.look == Look::Spans).expect("what is not stated");
+        assert_eq!(spans.runs, [[[19.0, 0.0], [30.0, 0.0]], [[39.0, 0.0], [80.0, 0.0]]]);
+        assert_eq!(spans_without(&[vec![[1.0, 3.0], [50.0, 3.0]]], (0.0, 50.0)), None);
+        let of_pixels = MeaningOfB::in_pictures(false, 1.0, 1.0, None);
+        let history = History { residuals: vec![[0.0, 0.1]], ..history };
+        let residuals = residual_panels(&history, &of_pixels).swap_remove(0);
+        assert_eq!((residuals.y_label.as_str(), residuals.x_to), ("rms (pixels)", Some(80.0)));
     }
 
     #[test]

@@ -77,6 +77,11 @@ impl MeaningOfB {
         self.unit.split_once("/s").map_or(self.unit.as_str(), |(length, _)| length)
     }
 
+    /// Unit of the outlines as they came, before they are mapped to a plane.
+    pub(crate) fn unit_of_outlines(&self) -> &str {
+        if *self == Self::in_plane() { "image length" } else { self.length_unit() }
+    }
+
     /// Unit of a position, and what it was divided by.
     #[must_use]
     pub fn of_length(&self) -> String {

@@ -13,4 +13,4 @@ pub(crate) use document::{document, write_settings};
 pub use figures::{fit_figure, parameter_figure};
 pub use meaning_of_b::MeaningOfB;
 pub use parameter_table::{PARAMETER_COLUMNS, meaning_of_v, parameter_rows};
-pub use report_page::{Findings, PicturesLeftOut, Report, write_report};
+pub use report_page::{Findings, PictureLeftOut, PicturesLeftOut, Report, write_report};

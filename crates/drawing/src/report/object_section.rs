@@ -16,8 +16,10 @@ use crate::plot::{escape, panel_svg};
 
 /// What a reader should know of the figures of a pose, of the parameters, of their standard deviations, and of the bound.
 const POSES: &str = "The turn since the first frame, and the place of the middle of the first outline. The true values lie within the \
-                     bands in 95 of 100 cases. There is no line where nothing is stated.";
+                     bands in 95 of 100 cases. Where nothing is stated there is no line, and the figure is grey.";
 const PARAMETERS: &str = "The parameters of the motion as they were known from the frames up to each time";
+const TO_THE_END: &str =
+    "The time goes to the end of the recording. Where nothing is stated there is no line, and the figure is grey.";
 const DEVIATIONS: &str = "How far the parameters are likely to be off, from the frames up to each time: the true value is within 1.96 \
                           standard deviations in 95 of 100 cases.";
 const BOUND: &str = "The dashed line is the Cramer-Rao bound: the least standard deviation that any unbiased method can have, if the outline \
@@ -51,9 +53,9 @@ impl ObjectSection<'_> {
             Method::Filter => ", with 95 % bands.",
             Method::Adaptive => ". The adaptive method gives no bands.",
         };
-        write_panels(body, "How it moved", &format!("{PARAMETERS}{bands}"), &panels);
+        write_panels(body, "How it moved", &format!("{PARAMETERS}{bands} {TO_THE_END}"), &panels);
         self.write_deviations(body, history);
-        write_residuals(body, history);
+        write_residuals(body, history, self.b);
     }
 
     fn write_parameters(&self, body: &mut String) {
@@ -88,7 +90,7 @@ impl ObjectSection<'_> {
 
     fn write_poses(&self, body: &mut String, history: &History) {
         if let Some((poses, model)) = history.poses.as_ref().zip(self.result.motion.model()) {
-            write_panels(body, "Where it was", POSES, &pose_panels(poses, history.start, model, self.b));
+            write_panels(body, "Where it was", POSES, &pose_panels(history, poses, model, self.b));
         }
     }
 
@@ -113,11 +115,11 @@ impl ObjectSection<'_> {
 }
 
 /// How well the frames fit, the last one with its curve, and which were rejected.
-fn write_residuals(body: &mut String, history: &History) {
-    let mut panels = residual_panels(history);
+fn write_residuals(body: &mut String, history: &History, b: &MeaningOfB) {
+    let mut panels = residual_panels(history, b);
     if let Some(latest) = &history.latest {
         let title = format!("Frame {}, the last one used", latest.0.frame);
-        panels.push(fit_panel(title, std::slice::from_ref(latest)));
+        panels.push(fit_panel(title, std::slice::from_ref(latest), b.unit_of_outlines()));
     }
     write_panels(body, "How well the frames fit", "", &panels);
     if !history.rejected.is_empty() {
@@ -151,7 +153,7 @@ fn write_panels(body: &mut String, heading: &str, text: &str, panels: &[Panel]) 
 
 /// Whether anything found is drawn in a panel, beside the truth and the bound.
 fn shows_something(panel: &Panel) -> bool {
-    let found = panel.curves.iter().filter(|curve| !matches!(curve.look, Look::Truth | Look::Reference));
+    let found = panel.curves.iter().filter(|curve| !matches!(curve.look, Look::Truth | Look::Reference | Look::Spans));
     found.flat_map(|curve| curve.runs.iter().flatten()).any(|point| point.iter().all(|value| value.is_finite()))
 }
 

@@ -3,14 +3,14 @@ use freeform_motion::riccati::{CameraScale, MotionModel};
 use freeform_motion::tracker::{MotionFamily, Trajectory};
 
 use super::bound_found::BoundAt;
-use super::figures::BAND;
+use super::figures::{BAND, spans_without};
 use super::meaning_of_b::MeaningOfB;
 use crate::figure::{Curve, Look, Panel};
 use crate::history::{History, PoseHistory};
 
 /// The pose of an object against time, one panel for each of its parameters, with bands; lines and bands end where nothing is stated.
 /// Positions are divided by a camera scale, as those of a trajectory are.
-pub(crate) fn pose_panels(poses: &PoseHistory, start: Option<f64>, model: MotionModel, b: &MeaningOfB) -> Vec<Panel> {
+pub(crate) fn pose_panels(history: &History, poses: &PoseHistory, model: MotionModel, b: &MeaningOfB) -> Vec<Panel> {
     let names = Trajectory::pose_names(model).iter().enumerate();
     let panels = names.map(|(index, name)| {
         let (title, y_label, factor) = axis(name, b);
@@ -35,15 +35,19 @@ pub(crate) fn pose_panels(poses: &PoseHistory, start: Option<f64>, model: Motion
             }
         }
         end_run(&mut run, &mut lower, &mut upper);
+        let spans = history.start.zip(history.end).and_then(|range| spans_without(&line, range));
+        let mut curves = vec![
+            Curve { name: "95 % band".to_owned(), look: Look::Band, runs: band },
+            Curve { name: "identified".to_owned(), look: Look::Line, runs: line },
+        ];
+        curves.extend(spans);
         Panel {
             title,
             x_label: "time (s)".to_owned(),
             y_label,
-            curves: vec![
-                Curve { name: "95 % band".to_owned(), look: Look::Band, runs: band },
-                Curve { name: "identified".to_owned(), look: Look::Line, runs: line },
-            ],
-            x_from: start,
+            curves,
+            x_from: history.start,
+            x_to: history.end,
             ..Panel::default()
         }
     });
@@ -83,6 +87,7 @@ pub(crate) fn deviation_panels(
             runs(estimates)
         };
         let (all, random) = (of(false), of(true));
+        let spans = history.start.zip(history.end).and_then(|range| spans_without(&all, range));
         let mut curves = vec![Curve { name: "standard deviation".to_owned(), look: Look::Line, runs: all }];
         // Told apart by its own line only where it is another.
         if differs(&curves[0].runs, &random) {
@@ -91,12 +96,14 @@ pub(crate) fn deviation_panels(
         if !bound.is_empty() {
             curves.push(Curve { name: "least possible (bound)".to_owned(), look: Look::Truth, runs: runs(of_bound) });
         }
+        curves.extend(spans);
         Panel {
             title: format!("Standard deviation of {name}"),
             x_label: "time (s)".to_owned(),
             y_label: format!("{name}, std ({unit})"),
             curves,
             x_from: history.start,
+            x_to: history.end,
             y_logarithmic: true,
             ..Panel::default()
         }

@@ -1,5 +1,7 @@
+use std::ffi::OsStr;
 use std::fmt::Write as _;
 use std::io;
+use std::path::Path;
 
 use freeform_motion::Truth;
 use freeform_motion::tracker::{FrameRanges, ObjectResult};
@@ -11,7 +13,7 @@ use super::player::write_script;
 use crate::history::{Histories, OBJECTS_PLAYED, OBJECTS_WITH_POSES};
 use crate::plot::escape;
 
-/// Number of left-out pictures that are listed with their reasons.
+/// Number of lines for left-out pictures with their reasons.
 const PICTURES_TOLD: usize = 10;
 
 /// What a report says. The default says nothing, of b in the coordinates of a file.
@@ -53,8 +55,19 @@ pub struct Findings<'a> {
 pub struct PicturesLeftOut<'a> {
     /// How many.
     pub count: u64,
-    /// Number and reason of the first of them.
-    pub first: &'a [(u64, String)],
+    /// The first of them.
+    pub first: &'a [PictureLeftOut],
+}
+
+/// A picture without an outline.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PictureLeftOut {
+    /// Number of the frame.
+    pub frame: u64,
+    /// Name of the file, with its folders.
+    pub file: String,
+    /// Why there is no outline, without the name and the number.
+    pub reason: String,
 }
 
 /// Writes a page that needs nothing but itself, one object after the other: parameters, warnings, a player of the first objects, and figures.
@@ -106,19 +119,38 @@ pub fn write_report(sink: &mut impl io::Write, report: &Report<'_>) -> io::Resul
     sink.write_all(after.as_bytes())
 }
 
-/// Pictures without an outline.
+/// Pictures without an outline: a line for each reason in a file, which is named once, by its last part.
 fn write_left_out(body: &mut String, PicturesLeftOut { count, first }: &PicturesLeftOut<'_>) {
     if *count == 0 {
         return;
     }
     let _ = writeln!(body, "<h2>Pictures without an outline: {count}</h2>\n<ul>");
-    let (told, others) = first.split_at(first.len().min(PICTURES_TOLD));
-    told.iter().for_each(|(_, reason)| {
-        let _ = writeln!(body, "<li>{}</li>", escape(reason));
-    });
-    let frames: FrameRanges = others.iter().map(|(frame, _)| *frame).collect();
-    let more = count - told.len() as u64;
-    let _ = if more > 0 { writeln!(body, "<li>{more} more: {frames}</li>\n</ul>") } else { writeln!(body, "</ul>") };
+    let (mut lines, mut others): (Vec<(&PictureLeftOut, Vec<u64>)>, _) = (Vec::new(), Vec::new());
+    for picture in *first {
+        let is_same = |(known, _): &(&PictureLeftOut, _)| known.file == picture.file && known.reason == picture.reason;
+        match lines.iter().position(is_same) {
+            Some(line) => lines[line].1.push(picture.frame),
+            None if lines.len() < PICTURES_TOLD => lines.push((picture, vec![picture.frame])),
+            None => others.push(picture.frame),
+        }
+    }
+    let mut last_file = None;
+    for (picture, frames) in &lines {
+        if last_file.replace(&picture.file) != Some(&picture.file) {
+            let name = Path::new(&picture.file)
+                .file_name()
+                .map_or_else(|| picture.file.as_str().into(), OsStr::to_string_lossy);
+            let _ = write!(body, "<li>{}: ", escape(&name));
+        } else {
+            body.push_str("<li>");
+        }
+        let plural = if frames.len() == 1 { "" } else { "s" };
+        let ranges: FrameRanges = frames.iter().copied().collect();
+        let _ = writeln!(body, "frame{plural} {ranges}: {}</li>", escape(&picture.reason));
+    }
+    let more = count - lines.iter().map(|(_, frames)| frames.len() as u64).sum::<u64>();
+    let others: FrameRanges = others.into_iter().collect();
+    let _ = if more > 0 { writeln!(body, "<li>{more} more: {others}</li>\n</ul>") } else { writeln!(body, "</ul>") };
 }
 
 fn summary(results: &[ObjectResult]) -> String {
