@@ -10,6 +10,7 @@ use freeform_motion::tracker::{FrameRejection, RejectionCause};
 use nalgebra::{Point2, SMatrix};
 
 const PAGE: &str = include_str!("../../docs/warnings.md");
+const UNCERTAINTIES: &str = include_str!("../../docs/reading-uncertainties.md");
 const SOURCE: &str = include_str!("../../src/warning.rs");
 const TRACING_SOURCE: &str = include_str!("../../crates/outline-io/src/choice/warning.rs");
 
@@ -109,6 +110,16 @@ fn every_warning_stands_on_the_page_with_its_message() {
     let of_origin = OF_ORIGIN.iter().map(|warning| (warning.code().to_owned(), warning.to_string()));
     let expected: BTreeSet<_> = of_objects.chain(of_tracing).chain(of_origin).collect();
     assert_eq!(written, expected);
+}
+
+#[test]
+fn the_list_of_what_to_ask_before_a_number_is_used_has_every_warning() {
+    let list = UNCERTAINTIES.split("\n## ").find(|section| section.starts_with("May I use this number?"));
+    let list = list.expect("a section");
+    let codes: BTreeSet<&str> = list.split('`').skip(1).step_by(2).collect();
+    let missing: Vec<String> =
+        sections().into_iter().map(|(code, _)| code).filter(|code| !codes.contains(&**code)).collect();
+    assert!(missing.is_empty(), "{missing:?}");
 }
 
 #[test]
