@@ -16,6 +16,7 @@ mod rectification;
 #[cfg(feature = "serde")]
 mod resting;
 mod robustness;
+mod rolling_wheel;
 mod seeking;
 #[cfg(feature = "serde")]
 mod serialised;
