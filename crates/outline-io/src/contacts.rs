@@ -52,3 +52,24 @@ impl Contacts {
         self.first_after
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_was_forgotten_while_it_touched_another_may_be_what_is_new() {
+        let mut contacts = Contacts::default();
+        contacts.touch(0);
+        contacts.touch(1);
+        // It is seen by itself again, and leaves later; another one was never touched.
+        contacts.see(1);
+        [1, 2].into_iter().for_each(|name| contacts.forget(name));
+        contacts.name(30, 3);
+        assert_eq!(contacts.first_after(), None);
+        contacts.forget(0);
+        contacts.name(40, 4);
+        contacts.name(41, 5);
+        assert_eq!(contacts.first_after(), Some(AfterContact { frame: 40, name: 4, forgotten: 0 }));
+    }
+}
