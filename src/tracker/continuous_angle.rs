@@ -1,16 +1,22 @@
 //! Angles that go on beyond half a turn.
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use freeform_estimate::{MotionState, PoseParameter};
 
 /// Steps of the usual length in which an object may go unseen without whole turns being in doubt: it turns by less than half a circle from frame to frame.
 const LONGEST_STEP: f64 = 1.5;
+/// Turns beyond what was expected of which one the other way round is less than twice as large, rad: nobody knows which of them it was. That is how the
+/// motion filter tells turns apart.
+const EITHER_WAY: f64 = TAU / 3.0;
 
 /// The angle of the poses of an object, continuous over time. Of the whole turns that it may have made since the pose before, those are counted that its
 /// angular velocity has made, the mean of those known last before and first afterwards; the fewest where none is known.
 ///
 /// Where an object was not seen for long, and its angular velocity is not known well enough, is not known yet, or was another one before than it is
-/// afterwards, whole turns may have been missed. The standard deviation of all angles from then on has what that may be.
+/// afterwards, whole turns may have been missed. So they may where it was seen to have turned by more than a third of a circle beyond what was expected,
+/// and might have turned the other way round. The standard deviation of all angles from then on has what that may be.
+///
+/// Predicted poses are in line with those before them, and nothing goes on from them.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ContinuousAngle {
     last: Option<LastPose>,
@@ -24,6 +30,16 @@ pub struct ContinuousAngle {
     deviation: f64,
 }
 
+/// Where a pose is from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PoseSource {
+    /// A frame that was used.
+    Frame,
+    /// The frames before one that was not used.
+    Prediction,
+}
+
+/// Of the last frame that was used.
 #[derive(Debug, Clone, Copy)]
 struct LastPose {
     /// In seconds.
@@ -54,32 +70,44 @@ impl Omega {
 impl ContinuousAngle {
     /// Makes the angle of the next pose go on from those before it. It is given as that of a state, between -pi and pi rad, and its standard deviation
     /// gets what whole turns may have been missed. Where there is none, or it is not known, nothing changes.
-    pub fn go_on(&mut self, state: &MotionState, pose: &mut [PoseParameter]) {
+    pub fn go_on(&mut self, state: &MotionState, source: PoseSource, pose: &mut [PoseParameter]) {
         let angle = pose.iter_mut().find(|parameter| parameter.name == "angle");
         let Some(PoseParameter { value, standard_deviation, .. }) = angle.filter(|angle| angle.value.is_finite())
         else {
             return;
         };
         let (time, omega) = (state.time(), Omega::of(state));
-        let mut expected = 0.0;
-        if let Some(last) = self.last {
-            let seconds = time - last.time;
-            let step = self.step.map_or(seconds, |step| step.min(seconds));
-            self.step = Some(step);
-            let known = [self.omega, omega].into_iter().flatten();
-            let (sum, count) = known.fold((0.0, 0.0), |(sum, count), omega| (sum + omega.value, count + 1.0));
-            expected = last.angle + sum / f64::max(count, 1.0) * seconds;
-            if seconds > LONGEST_STEP * step {
-                self.open += seconds;
-            }
-        }
-        let deviation = self.deviation.hypot(self.missed(omega));
-        if omega.is_some() {
-            (self.deviation, self.open, self.omega) = (deviation, 0.0, omega);
-        }
+        let mut next = *self;
+        let expected = next.expect(time, omega);
         *value += TAU * ((expected - *value) / TAU).round();
+        let mut deviation = next.deviation.hypot(next.missed(omega));
+        if self.last.is_some() && source == PoseSource::Frame && (*value - expected).abs() > EITHER_WAY {
+            // As often one as the other, a whole turn apart, and in the next frame perhaps in the same direction.
+            (next.deviation, deviation) = (next.deviation + PI, deviation + PI);
+        }
         *standard_deviation = standard_deviation.hypot(deviation);
-        self.last = Some(LastPose { time, angle: *value });
+        if source == PoseSource::Prediction {
+            return;
+        }
+        if omega.is_some() {
+            (next.deviation, next.open, next.omega) = (deviation, 0.0, omega);
+        }
+        next.last = Some(LastPose { time, angle: *value });
+        *self = next;
+    }
+
+    /// The angle that is expected at a time, none before the first, by the angular velocities before and then; counts the time that poses were missing.
+    fn expect(&mut self, time: f64, omega: Option<Omega>) -> f64 {
+        let Some(last) = self.last else { return 0.0 };
+        let seconds = time - last.time;
+        let step = self.step.map_or(seconds, |step| step.min(seconds));
+        self.step = Some(step);
+        if seconds > LONGEST_STEP * step {
+            self.open += seconds;
+        }
+        let known = [self.omega, omega].into_iter().flatten();
+        let (sum, count) = known.fold((0.0, 0.0), |(sum, count), omega| (sum + omega.value, count + 1.0));
+        last.angle + sum / f64::max(count, 1.0) * seconds
     }
 
     /// Standard deviation of the whole turns that may have been missed where poses were missing, by the angular velocity afterwards.
@@ -98,8 +126,6 @@ impl ContinuousAngle {
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::PI;
-
     use freeform_estimate::NormalisedState;
     use freeform_riccati::{MAX_PARAMETERS, MotionModel};
     use nalgebra::{DMatrix, Matrix3, Point2};
@@ -131,7 +157,7 @@ mod tests {
     /// An angle with the deviation that comes to its own, after those before it.
     fn next(angles: &mut ContinuousAngle, state: &MotionState, angle: f64) -> (f64, f64) {
         let mut pose = [PoseParameter { name: "angle", value: angle, standard_deviation: 0.0 }];
-        angles.go_on(state, &mut pose);
+        angles.go_on(state, PoseSource::Frame, &mut pose);
         (pose[0].value, pose[0].standard_deviation)
     }
 
@@ -179,5 +205,36 @@ mod tests {
         assert!(next(&mut angles, &state(0.01, 40.0, 0.1), f64::NAN).0.is_nan());
         let later = next(&mut angles, &state(0.02, 40.0, 0.1), 3.8 - TAU);
         assert!(first == (3.0, 0.0) && (later.0 - 3.8).abs() < 1e-9, "{first:?} {later:?}");
+    }
+
+    #[test]
+    fn an_angle_that_is_predicted_wrong_is_not_gone_on_from() {
+        let mut angles = ContinuousAngle::default();
+        assert_eq!(next(&mut angles, &state(0.0, 0.1, 0.01), 0.5).0, 0.5);
+        // Taken aside at once, which is predicted to go on: three rad in a step.
+        for (time, angle) in [(0.1, 3.0), (0.2, -3.0), (0.3, -0.6)] {
+            let mut pose = [PoseParameter { name: "angle", value: angle, standard_deviation: 0.0 }];
+            angles.go_on(&state(time, f64::NAN, 0.0), PoseSource::Prediction, &mut pose);
+        }
+        let (angle, deviation) = next(&mut angles, &state(0.4, f64::NAN, 0.0), 0.6);
+        assert!((angle - 0.6).abs() < 1e-9 && deviation < 0.1, "{angle} {deviation}");
+    }
+
+    #[test]
+    fn where_an_object_may_have_turned_the_other_way_round_the_angle_says_so_from_then_on() {
+        let turned = |step: f64| {
+            let mut angles = ContinuousAngle::default();
+            let poses = (0..5).map(|i| (0.1 * f64::from(i), step * f64::from(i)));
+            poses.fold((0.0, 0.0), |_, (time, angle)| {
+                // A first angular velocity is known, and none of those after it.
+                let omega = if time == 0.0 { 0.0 } else { f64::NAN };
+                next(&mut angles, &state(time, omega, 0.01), angle - TAU * (angle / TAU).round())
+            })
+        };
+        let (_, deviation) = turned(2.0);
+        assert_eq!(deviation, 0.0);
+        // Four turns of nearly half a circle, each of them perhaps one the other way round.
+        let (angle, deviation) = turned(3.1);
+        assert!((angle - 12.4).abs() < 1e-9 && deviation >= 4.0 * PI, "{angle} {deviation}");
     }
 }

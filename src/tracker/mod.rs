@@ -45,7 +45,7 @@ pub use freeform_outline_filter::ExpectedOutline;
 
 pub use self::{
     attendance::{Attendance, Sighting},
-    continuous_angle::ContinuousAngle,
+    continuous_angle::{ContinuousAngle, PoseSource},
     edge_seeker::EdgeSeeker,
     family::MotionFamily,
     not_stated::NotStated,

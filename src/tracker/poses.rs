@@ -4,7 +4,10 @@ use std::collections::HashMap;
 use freeform_estimate::{MotionState, PoseParameter};
 use freeform_riccati::CameraScale;
 
-use super::{continuous_angle::ContinuousAngle, observation::Observation};
+use super::{
+    continuous_angle::{ContinuousAngle, PoseSource},
+    observation::Observation,
+};
 
 /// The poses of objects as they are stated, frame after frame: with angles that are [continuous](ContinuousAngle) within each
 /// [segment](Observation::segment) and may exceed half a turn, and in space if a camera scale is given. Memory does not grow with the number of frames.
@@ -43,7 +46,9 @@ impl Poses {
 
     /// The pose of an object after a frame, which is its next one; `None` where it is not known then. What the outline does not show is not finite.
     pub fn take(&mut self, observation: &Observation) -> Option<Vec<PoseParameter>> {
-        Some(self.of_state(&observation.object, observation.segment, observation.present_state()?))
+        let (segment, state) = (observation.segment, observation.present_state()?);
+        let source = if observation.is_accepted() { PoseSource::Frame } else { PoseSource::Prediction };
+        Some(self.of_state(&observation.object, (segment, source), state))
     }
 
     /// Forgets an object: if the name comes again, it is that of a new one.
@@ -52,7 +57,12 @@ impl Poses {
     }
 
     /// The pose of an object in a state, which is its next one.
-    pub(super) fn of_state(&mut self, object: &str, segment: usize, state: &MotionState) -> Vec<PoseParameter> {
+    pub(super) fn of_state(
+        &mut self,
+        object: &str,
+        (segment, source): (usize, PoseSource),
+        state: &MotionState,
+    ) -> Vec<PoseParameter> {
         let mut pose = state.pose_parameters();
         if !self.angles.contains_key(object) {
             self.angles.insert(object.to_owned(), (segment, ContinuousAngle::default()));
@@ -62,7 +72,7 @@ impl Poses {
             if *current != segment {
                 (*current, *angle) = (segment, ContinuousAngle::default());
             }
-            angle.go_on(state, &mut pose);
+            angle.go_on(state, source, &mut pose);
         }
         if let Some(scale) = self.scale {
             pose.iter_mut().for_each(|parameter| to_space(parameter, scale));

@@ -7,7 +7,8 @@ use freeform_estimate::{
 use freeform_riccati::{CameraScale, MotionModel};
 
 use super::{
-    MethodSettings, Tracker, not_stated::NotStated, observation::Observation, poses::Poses, result::VELOCITY_NAMES,
+    MethodSettings, Tracker, continuous_angle::PoseSource, not_stated::NotStated, observation::Observation,
+    poses::Poses, result::VELOCITY_NAMES,
 };
 use crate::rejection::FrameRejection;
 
@@ -177,7 +178,8 @@ impl Trajectory {
         let mut poses = Poses::new(scale);
         let rows = self.rows.iter().map(|row| {
             let state = row.state()?;
-            let pose = poses.of_state(&row.object, row.segment, state);
+            let source = if row.accepted { PoseSource::Frame } else { PoseSource::Prediction };
+            let pose = poses.of_state(&row.object, (row.segment, source), state);
             let motion = state.motion();
             let velocity = row.velocity_not_stated.is_none().then(|| state.velocity_of_middle());
             Some(PoseAndMotion {
