@@ -57,5 +57,5 @@ fn an_object_is_followed_through_a_long_contact_in_the_pictures_themselves() {
     let object = found["objects"].as_array().expect("a list").iter().find(is_whole).expect("an object that is kept");
     let omega = &object["parameters"]["omega"];
     let [value, std] = ["value", "std"].map(|field| omega[field].as_f64().expect("a number"));
-    assert!((value - 1.5).abs() < 4.0 * std && std < 0.2, "{value} {std}");
+    assert!((value - 1.5).abs() < 4.0 * std && std < 0.4, "{value} {std}");
 }
