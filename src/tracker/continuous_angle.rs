@@ -87,6 +87,8 @@ impl ContinuousAngle {
         }
         *standard_deviation = standard_deviation.hypot(deviation);
         if source == PoseSource::Prediction {
+            // How often poses come is told by those that are predicted as well.
+            self.step = next.step;
             return;
         }
         if omega.is_some() {
@@ -218,6 +220,18 @@ mod tests {
         }
         let (angle, deviation) = next(&mut angles, &state(0.4, f64::NAN, 0.0), 0.6);
         assert!((angle - 0.6).abs() < 1e-9 && deviation < 0.1, "{angle} {deviation}");
+    }
+
+    #[test]
+    fn whole_turns_may_be_missed_while_poses_are_predicted_from_the_first_one_on() {
+        let mut angles = ContinuousAngle::default();
+        next(&mut angles, &state(0.0, 5.0, 0.1), 0.5);
+        for frame in 1..10 {
+            let mut pose = [PoseParameter { name: "angle", value: 0.5, standard_deviation: 0.0 }];
+            angles.go_on(&state(0.1 * f64::from(frame), 5.0, 0.1), PoseSource::Prediction, &mut pose);
+        }
+        let (_, deviation) = next(&mut angles, &state(1.0, 5.0, 3.0), 0.6);
+        assert!(deviation > 2.0, "{deviation}");
     }
 
     #[test]
