@@ -23,7 +23,7 @@ impl<const N: usize> Arrival<N> {
     /// Takes them to be one with those of the hypothesis that have not changed.
     pub(super) fn blend_into(&self, hypothesis: &mut Hypothesis<N>) {
         let Self { share, state, .. } = self;
-        hypothesis.blend((&state.mean, &state.covariance), *share, hypothesis.size());
+        hypothesis.blend((&state.mean, &state.covariance), *share);
     }
 
     /// Corrects them by a measurement, and their share by how well each part explains it. Of those that have not changed the logarithm of the
@@ -47,16 +47,11 @@ impl<const N: usize> Arrival<N> {
 }
 
 impl<const N: usize> Hypothesis<N> {
-    /// Takes a share of it to be in another state: both have the first entries, so many, in common.
-    pub(super) fn blend(
-        &mut self,
-        (mean, of_covariance): (&SVector<f64, N>, &SMatrix<f64, N, N>),
-        share: f64,
-        shared: usize,
-    ) {
-        let own = 1.0 - share;
+    /// Takes a share of it to be in another state of its course.
+    pub(super) fn blend(&mut self, (mean, of_covariance): (&SVector<f64, N>, &SMatrix<f64, N, N>), share: f64) {
+        let (own, size) = (1.0 - share, self.size());
         let mut apart = [0.0; N];
-        for (i, apart) in apart.iter_mut().enumerate().take(shared) {
+        for (i, apart) in apart.iter_mut().enumerate().take(size) {
             *apart = mean[i] - self.mean[i];
             self.mean[i] += share * *apart;
         }
@@ -66,7 +61,7 @@ impl<const N: usize> Hypothesis<N> {
             || {
                 // Columns are written anew, where nothing else is.
                 let columns = covariance.iter_mut().zip(of_covariance).enumerate();
-                if shared == N {
+                if size == N {
                     for (j, (entries, of_other)) in columns {
                         let (mut column, by_column) = ([0.0; N], share * apart[j]);
                         for i in 0..N {
@@ -77,17 +72,11 @@ impl<const N: usize> Hypothesis<N> {
                     return;
                 }
                 // What lies beyond the entries in use is none, in all of them.
-                let of_shared: [f64; N] = std::array::from_fn(|i| if i < shared { share } else { 0.0 });
-                for (j, (entries, of_other)) in columns {
+                let of_used: [f64; N] = std::array::from_fn(|i| if i < size { share } else { 0.0 });
+                for (j, (entries, of_other)) in columns.take(size) {
                     let (mut column, by_column) = ([0.0; N], share * apart[j]);
-                    if j < shared {
-                        for i in 0..N {
-                            column[i] = of_shared[i] * of_other[i] + own * (entries[i] + by_column * apart[i]);
-                        }
-                    } else {
-                        for i in 0..N {
-                            column[i] = own * entries[i];
-                        }
+                    for i in 0..N {
+                        column[i] = of_used[i] * of_other[i] + own * (entries[i] + by_column * apart[i]);
                     }
                     *entries = column;
                 }
@@ -134,7 +123,7 @@ mod tests {
         let (logarithm, share, _) = apart(&measurement, 1e-4);
         let mut blended = of_variance(0.01);
         let few = of_variance(1e6);
-        blended.blend((&few.mean, &few.covariance), 1e-4, 9);
+        blended.blend((&few.mean, &few.covariance), 1e-4);
         let of_blended = blended.update(&measurement).expect("regular").log_likelihood;
         // It is explained by the few alone, 1e-4 times over.
         let alone = of_variance(1e6).update(&measurement).expect("regular").log_likelihood;

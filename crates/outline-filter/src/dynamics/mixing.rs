@@ -53,10 +53,11 @@ pub(super) fn mix<const N: usize>(
             }
             _ if hypothesis.shared() < hypothesis.size() => {
                 let state = of_all.as_state_of(hypothesis, model, units);
-                hypothesis.blend((&state.mean, &state.covariance), share, hypothesis.size());
+                hypothesis.blend((&state.mean, &state.covariance), share);
             }
             _ => {
-                hypothesis.blend((&of_all.mean, &of_all.covariance), share, hypothesis.size());
+                // As with that state, which is not made for it: a copy for each of the many.
+                hypothesis.blend((&of_all.mean, &of_all.covariance), share);
                 of_all.add_unknown_to(hypothesis, model, units, share);
             }
         }
