@@ -39,6 +39,13 @@ pub enum PoseSource {
     Prediction,
 }
 
+impl PoseSource {
+    /// Of the pose after a frame, by whether that was used.
+    pub(super) fn of(is_accepted: bool) -> Self {
+        if is_accepted { Self::Frame } else { Self::Prediction }
+    }
+}
+
 /// Of the last frame that was used.
 #[derive(Debug, Clone, Copy)]
 struct LastPose {
@@ -82,7 +89,7 @@ impl ContinuousAngle {
         *value += TAU * ((expected - *value) / TAU).round();
         let mut deviation = next.deviation.hypot(next.missed(omega));
         if self.last.is_some() && source == PoseSource::Frame && (*value - expected).abs() > EITHER_WAY {
-            // As often one as the other, a whole turn apart, and in the next frame perhaps in the same direction.
+            // As often one as the other, a whole turn apart. In the next frame it may be off in the same direction: deviations add up.
             (next.deviation, deviation) = (next.deviation + PI, deviation + PI);
         }
         *standard_deviation = standard_deviation.hypot(deviation);

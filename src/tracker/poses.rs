@@ -47,8 +47,7 @@ impl Poses {
     /// The pose of an object after a frame, which is its next one; `None` where it is not known then. What the outline does not show is not finite.
     pub fn take(&mut self, observation: &Observation) -> Option<Vec<PoseParameter>> {
         let (segment, state) = (observation.segment, observation.present_state()?);
-        let source = if observation.is_accepted() { PoseSource::Frame } else { PoseSource::Prediction };
-        Some(self.of_state(&observation.object, (segment, source), state))
+        Some(self.of_state(&observation.object, (segment, PoseSource::of(observation.is_accepted())), state))
     }
 
     /// Forgets an object: if the name comes again, it is that of a new one.

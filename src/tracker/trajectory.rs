@@ -66,8 +66,8 @@ pub struct TrajectoryRow {
 /// Pose and motion of an object in one frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PoseAndMotion {
-    /// The pose parameters as in [`MotionState::pose_parameters`], except that angles are [continuous](super::ContinuousAngle) from row to row of a segment and
-    /// may exceed half a turn.
+    /// The pose parameters as in [`MotionState::pose_parameters`], except that angles are [continuous](super::ContinuousAngle) from row to row of
+    /// a segment and may exceed half a turn.
     pub pose: Vec<PoseParameter>,
     /// The motion.
     pub motion: MotionEstimate,
@@ -178,8 +178,7 @@ impl Trajectory {
         let mut poses = Poses::new(scale);
         let rows = self.rows.iter().map(|row| {
             let state = row.state()?;
-            let source = if row.accepted { PoseSource::Frame } else { PoseSource::Prediction };
-            let pose = poses.of_state(&row.object, (row.segment, source), state);
+            let pose = poses.of_state(&row.object, (row.segment, PoseSource::of(row.accepted)), state);
             let motion = state.motion();
             let velocity = row.velocity_not_stated.is_none().then(|| state.velocity_of_middle());
             Some(PoseAndMotion {

@@ -11,11 +11,11 @@ pub struct AfterContact {
     pub forgotten: u64,
 }
 
-/// The objects that touch others, and those that were forgotten so.
+/// The objects that touch others, and what became of the first that was forgotten so.
 #[derive(Debug, Default)]
 pub(crate) struct Contacts {
     touching: Vec<u64>,
-    forgotten: Vec<u64>,
+    first_forgotten: Option<u64>,
     first_after: Option<AfterContact>,
 }
 
@@ -36,15 +36,14 @@ impl Contacts {
     pub(crate) fn forget(&mut self, name: u64) {
         if self.touching.contains(&name) {
             self.see(name);
-            self.forgotten.push(name);
+            self.first_forgotten.get_or_insert(name);
         }
     }
 
     /// A picture shows an object that has no name yet, and gets this one.
     pub(crate) fn name(&mut self, frame: u64, name: u64) {
-        if let (None, [forgotten, ..]) = (self.first_after, &self.forgotten[..]) {
-            self.first_after = Some(AfterContact { frame, name, forgotten: *forgotten });
-        }
+        let after = self.first_forgotten.map(|forgotten| AfterContact { frame, name, forgotten });
+        self.first_after = self.first_after.or(after);
     }
 
     /// The first new object since one was forgotten.

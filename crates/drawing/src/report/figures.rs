@@ -137,7 +137,7 @@ pub(crate) fn parameter_panels(
                 curves.push(Curve { name: "true value".to_owned(), look: Look::Truth, runs });
             }
             let line = curves.iter().find(|curve| curve.look == Look::Line);
-            let spans = line.and_then(|line| spans_without(&line.runs, history.start.zip(history.end)?));
+            let spans = line.and_then(|line| history.spans_without(&line.runs));
             curves.extend(spans);
             Panel {
                 title: format!("{prefix}{}{note}", meaning(name)),
@@ -199,6 +199,21 @@ impl History {
         Some((first, known.next_back().unwrap_or(first)))
     }
 
+    /// The times of the recording, from the first frame of the object on, at which a line does not run, as pale areas; none where all of them are too short
+    /// to be seen as such.
+    pub(super) fn spans_without(&self, line: &[Vec<[f64; 2]>]) -> Option<Curve> {
+        let (first, last) = self.start.zip(self.end)?;
+        let ends = line.iter().filter_map(|run| Some((run.first()?[0], run.last()?[0])));
+        let (mut from, mut runs) = (first, Vec::new());
+        for (begins, ends) in ends.chain([(last, last)]) {
+            if begins - from > SHORTEST_SPAN * (last - first) {
+                runs.push(vec![[from, 0.0], [begins, 0.0]]);
+            }
+            from = from.max(ends);
+        }
+        (!runs.is_empty()).then(|| Curve { name: "not stated".to_owned(), look: Look::Spans, runs })
+    }
+
     /// What was identified of a parameter, with a band where its standard deviation is known; both with gaps where it was not.
     fn curves(&self, parameter: usize) -> Vec<Curve> {
         let found = |list: &Vec<ParameterEstimate>| list.get(parameter).copied().filter(|p| p.value.is_some());
@@ -223,19 +238,6 @@ impl History {
             Curve { name: "identified".to_owned(), look: Look::Line, runs },
         ]
     }
-}
-
-/// The times between a first and a last one at which a line does not run, as pale areas; none where all of them are too short to be seen as such.
-pub(super) fn spans_without(line: &[Vec<[f64; 2]>], (first, last): (f64, f64)) -> Option<Curve> {
-    let ends = line.iter().filter_map(|run| Some((run.first()?[0], run.last()?[0])));
-    let (mut from, mut runs) = (first, Vec::new());
-    for (begins, ends) in ends.chain([(last, last)]) {
-        if begins - from > SHORTEST_SPAN * (last - first) {
-            runs.push(vec![[from, 0.0], [begins, 0.0]]);
-        }
-        from = from.max(ends);
-    }
-    (!runs.is_empty()).then(|| Curve { name: "not stated".to_owned(), look: Look::Spans, runs })
 }
 
 /// The y axis of a parameter where few of its values and band edges would hide how the others go: the range of most of them, and a true value.
@@ -304,7 +306,7 @@ mod tests {
         assert_eq!((panel.x_from, panel.x_to), (Some(0.0), Some(80.0)));
         let spans = panel.curves.iter().find(|curve| curve.look == Look::Spans).expect("what is not stated");
         assert_eq!(spans.runs, [[[19.0, 0.0], [30.0, 0.0]], [[39.0, 0.0], [80.0, 0.0]]]);
-        assert_eq!(spans_without(&[vec![[1.0, 3.0], [50.0, 3.0]]], (0.0, 50.0)), None);
+        assert_eq!(history.spans_without(&[vec![[1.0, 3.0], [80.0, 3.0]]]), None);
         let of_pixels = MeaningOfB::in_pictures(false, 1.0, 1.0, None);
         let history = History { residuals: vec![[0.0, 0.1]], ..history };
         let residuals = residual_panels(&history, &of_pixels).swap_remove(0);

@@ -3,7 +3,7 @@ use freeform_motion::riccati::{CameraScale, MotionModel};
 use freeform_motion::tracker::{MotionFamily, Trajectory};
 
 use super::bound_found::BoundAt;
-use super::figures::{BAND, spans_without};
+use super::figures::BAND;
 use super::meaning_of_b::MeaningOfB;
 use crate::figure::{Curve, Look, Panel};
 use crate::history::{History, PoseHistory};
@@ -35,7 +35,7 @@ pub(crate) fn pose_panels(history: &History, poses: &PoseHistory, model: MotionM
             }
         }
         end_run(&mut run, &mut lower, &mut upper);
-        let spans = history.start.zip(history.end).and_then(|range| spans_without(&line, range));
+        let spans = history.spans_without(&line);
         let mut curves = vec![
             Curve { name: "95 % band".to_owned(), look: Look::Band, runs: band },
             Curve { name: "identified".to_owned(), look: Look::Line, runs: line },
@@ -87,7 +87,7 @@ pub(crate) fn deviation_panels(
             runs(estimates)
         };
         let (all, random) = (of(false), of(true));
-        let spans = history.start.zip(history.end).and_then(|range| spans_without(&all, range));
+        let spans = history.spans_without(&all);
         let mut curves = vec![Curve { name: "standard deviation".to_owned(), look: Look::Line, runs: all }];
         // Told apart by its own line only where it is another.
         if differs(&curves[0].runs, &random) {
