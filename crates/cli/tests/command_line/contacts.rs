@@ -3,28 +3,18 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::Path;
 
-use image::{GrayImage, Luma};
-
-use crate::support::{json, run, stderr, succeed};
+use crate::support::{Pear, json, pictures, run, stderr, succeed};
 
 /// Pictures of a pear that turns by 0.06 rad and travels by 6 pixels a frame along a bar, which it touches; the folder.
 fn passing(base: &Path, name: &str, bar: Range<u32>) -> String {
-    let folder = base.join(name);
-    std::fs::create_dir(&folder).expect("a folder");
-    for frame in 0..40_u32 {
-        let (sin, cos) = (0.06 * f64::from(frame)).sin_cos();
-        let picture = GrayImage::from_fn(280, 110, |column, row| {
-            if bar.contains(&column) && (56..74).contains(&row) {
-                return Luma([210]);
-            }
-            let (x, y) = (f64::from(column) - 20.0 - 6.0 * f64::from(frame), f64::from(row) - 47.0);
-            let (x, y) = (cos * x + sin * y, cos * y - sin * x);
-            let depth = 1.0 - (x / 16.0).powi(2) - (y / (11.0 + 0.2 * x)).powi(2);
-            Luma([(30.0 + 180.0 * (6.0 * depth + 0.5).clamp(0.0, 1.0)) as u8])
-        });
-        picture.save(folder.join(format!("{frame:03}.png"))).expect("a picture");
-    }
-    folder.to_str().expect("UTF-8").to_owned()
+    let pear = Pear { half: [16.0, 11.0], taper: 0.2, edge: 6.0 };
+    pictures(&base.join(name), 40, [280, 110], |frame, column, row| {
+        if bar.contains(&column) && (56..74).contains(&row) {
+            return 210;
+        }
+        let time = f64::from(frame);
+        pear.shade(0.06 * time, [f64::from(column) - 20.0 - 6.0 * time, f64::from(row) - 47.0])
+    })
 }
 
 #[test]

@@ -1,26 +1,17 @@
 //! Pictures whose pixels are not as wide as they are high.
 use std::path::Path;
 
-use image::{GrayImage, Luma};
-
-use crate::support::{json, run, stderr, stdout};
+use crate::support::{Pear, json, pictures, run, stderr, stdout};
 
 /// Width of a pixel over its height.
 const ASPECT: f64 = 1.25;
 
 /// Pictures of a pear that turns by 0.05 rad a frame, with pixels that are wider than high; the folder.
-fn wide_pixels(folder: &Path) -> String {
-    for frame in 0..40_u32 {
-        let (sin, cos) = (0.05 * f64::from(frame)).sin_cos();
-        let picture = GrayImage::from_fn(140, 150, |column, row| {
-            let (x, y) = (ASPECT * (f64::from(column) - 70.0), f64::from(row) - 75.0);
-            let (x, y) = (cos * x + sin * y, cos * y - sin * x);
-            let depth = 1.0 - (x / 48.0).powi(2) - (y / (26.0 + 0.3 * x)).powi(2);
-            Luma([(30.0 + 180.0 * (12.0 * depth + 0.5).clamp(0.0, 1.0)) as u8])
-        });
-        picture.save(folder.join(format!("{frame:02}.png"))).expect("a picture");
-    }
-    folder.to_str().expect("UTF-8").to_owned()
+fn wide_pixels(base: &Path) -> String {
+    let pear = Pear { half: [48.0, 26.0], taper: 0.3, edge: 12.0 };
+    pictures(&base.join("wide"), 40, [140, 150], |frame, column, row| {
+        pear.shade(0.05 * f64::from(frame), [ASPECT * (f64::from(column) - 70.0), f64::from(row) - 75.0])
+    })
 }
 
 #[test]

@@ -61,14 +61,42 @@ pub(crate) fn file(folder: &Path, name: &str, content: impl AsRef<[u8]>) -> Stri
     path.to_str().expect("UTF-8").to_owned()
 }
 
+/// A new folder with so many pictures of a width and a height, by the shade of a frame, a column and a row; its path.
+pub(crate) fn pictures(
+    folder: &Path,
+    count: u32,
+    [width, height]: [u32; 2],
+    shade: impl Fn(u32, u32, u32) -> u8,
+) -> String {
+    std::fs::create_dir(folder).expect("a folder");
+    for frame in 0..count {
+        let picture = image::GrayImage::from_fn(width, height, |column, row| image::Luma([shade(frame, column, row)]));
+        picture.save(folder.join(format!("{frame}.png"))).expect("a picture");
+    }
+    folder.to_str().expect("UTF-8").to_owned()
+}
+
 /// A new folder with so many small pictures of a body that moves by a pixel from each to the next; its path.
 pub(crate) fn small_pictures(base: &Path, count: u32) -> String {
-    let folder = base.join("p");
-    std::fs::create_dir(&folder).expect("a folder");
-    for frame in 0..count {
-        let inside = |x: u32, y: u32| (9 + frame..40 + frame).contains(&x) && (12..40 + x / 8).contains(&y);
-        let shade = |x, y| image::Luma([if inside(x, y) { 230 } else { 9 }]);
-        image::GrayImage::from_fn(64, 64, shade).save(folder.join(format!("{frame}.png"))).expect("a picture");
+    pictures(&base.join("p"), count, [64, 64], |frame, x, y| {
+        let inside = (9 + frame..40 + frame).contains(&x) && (12..40 + x / 8).contains(&y);
+        if inside { 230 } else { 9 }
+    })
+}
+
+/// A pear of so many pixels in length, from its middle, and in height, how much wider it gets to its end, and how steep its edge is.
+pub(crate) struct Pear {
+    pub(crate) half: [f64; 2],
+    pub(crate) taper: f64,
+    pub(crate) edge: f64,
+}
+
+impl Pear {
+    /// The shade at a place from its middle, of the pear turned by an angle.
+    pub(crate) fn shade(&self, angle: f64, [x, y]: [f64; 2]) -> u8 {
+        let (sin, cos) = angle.sin_cos();
+        let (x, y) = (cos * x + sin * y, cos * y - sin * x);
+        let depth = 1.0 - (x / self.half[0]).powi(2) - (y / (self.half[1] + self.taper * x)).powi(2);
+        (30.0 + 180.0 * (self.edge * depth + 0.5).clamp(0.0, 1.0)) as u8
     }
-    folder.display().to_string()
 }

@@ -32,7 +32,7 @@ fn a_velocity_that_is_not_known_though_all_parameters_are_is_told_with_the_reaso
 }
 
 #[test]
-fn every_warning_that_the_page_of_warnings_lists_is_printed_with_its_code() {
+fn warnings_of_results_and_of_pictures_and_tables_are_printed_with_their_codes() {
     let folder = tempfile::tempdir().expect("a folder");
     let rows = sequence("") + "20,5.0,1,1\n";
     let told = stderr(&run("identify -", &rows));
