@@ -89,7 +89,7 @@ pub(crate) fn note(message: &str) {
     say(&format!("note: {message}"));
 }
 
-/// Prints a warning of the options or the input on standard error, which is in no list and says all itself.
+/// Prints a warning on standard error that docs/warnings.md does not list: of the options, the input or files, or a count of others.
 pub(crate) fn warn(message: &str) {
     say(&format!("warning: {message}"));
 }

@@ -21,7 +21,7 @@ pub(crate) struct Line {
 }
 
 impl Line {
-    fn of_others(message: String) -> Self {
+    fn without_code(message: String) -> Self {
         Self { code: None, message }
     }
 
@@ -42,7 +42,7 @@ pub(crate) fn handful(results: &[ObjectResult]) -> Vec<Line> {
         let of_object = lines_of(&result.warnings);
         if lines.len() + of_object.len() > OF_ALL {
             let others = 1 + objects.count();
-            lines.push(Line::of_others(format!("there are warnings of {others} more object(s); --json lists them")));
+            lines.push(Line::without_code(format!("there are warnings of {others} more object(s); --json lists them")));
             break;
         }
         let of_object = of_object.into_iter();
@@ -63,7 +63,7 @@ fn lines_of(warnings: &[Warning]) -> Vec<Line> {
         rest.iter().for_each(|warning| *counts.entry(warning.code()).or_insert(0) += 1);
         let counts: Vec<String> = counts.iter().map(|(code, count)| format!("{count} {code}")).collect();
         let others = format!("{} more warnings, which --json lists: {}", rest.len(), counts.join(", "));
-        lines.push(Line::of_others(others));
+        lines.push(Line::without_code(others));
     }
     lines
 }
@@ -83,7 +83,7 @@ mod tests {
         let many = lines_of(&warnings(8));
         assert_eq!(many.len(), 5);
         let others = "4 more warnings, which --json lists: 1 diverged, 1 lost, 2 restarted";
-        assert_eq!(many[4], Line::of_others(others.to_owned()));
+        assert_eq!(many[4], Line::without_code(others.to_owned()));
         let first = Warning::Restarted { times: 0 };
         assert_eq!(many[0], Line { code: Some("restarted"), message: first.to_string() });
     }

@@ -63,8 +63,9 @@ pub(crate) struct IdentifyArgs {
 
     /// Write one row per frame with the parameters identified up to that frame
     ///
-    /// With the filter v1 and v2 are the velocity of the middle of the object, point_x and point_y where that is. The column reason says why a frame was not accepted, unstated
-    /// which values are empty and why, as in 'omega ambiguous; b1 ambiguous': ambiguous, unobservable or unknown.
+    /// With the filter v1 and v2 are the velocity of the middle of the object, point_x and point_y where that is. The column reason says why a
+    /// frame was not accepted, unstated which values are empty and why, as in 'omega ambiguous; b1 ambiguous': ambiguous, unobservable or
+    /// unknown.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) trace: Option<PathBuf>,
 
