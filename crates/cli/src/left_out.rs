@@ -1,5 +1,5 @@
 //! Pictures that gave no outline.
-use freeform_drawing::{PictureLeftOut, PicturesLeftOut};
+use freeform_drawing::PicturesLeftOut;
 use freeform_motion::tracker::FrameRanges;
 
 use crate::seen::{Missing, MissingKind};
@@ -10,33 +10,21 @@ const PICTURES_KEPT: usize = 1000;
 /// The pictures left out so far, with their reasons.
 #[derive(Debug, Default)]
 pub(crate) struct LeftOut {
-    pub(crate) count: u64,
     /// Number and reason of the first of them.
     pub(crate) pictures: Vec<(u64, String)>,
-    /// The same as a report lists them.
-    listed: Vec<PictureLeftOut>,
+    /// All of them, as a report lists them.
+    pub(crate) listed: PicturesLeftOut,
     /// How many of all could be read.
     pub(crate) readable: u64,
 }
 
 impl LeftOut {
     pub(crate) fn take(&mut self, missing: &Missing) {
-        self.count += 1;
         self.readable += u64::from(missing.seen_in.is_some());
+        self.listed.take(missing.frame, &missing.file, missing.bare_reason());
         if self.pictures.len() < PICTURES_KEPT {
             self.pictures.push((missing.frame, missing.reason.clone()));
-            let Missing { frame, file, .. } = missing;
-            self.listed.push(PictureLeftOut {
-                frame: *frame,
-                file: file.clone(),
-                reason: missing.bare_reason().to_owned(),
-            });
         }
-    }
-
-    /// As a report tells it.
-    pub(crate) fn told(&self) -> PicturesLeftOut<'_> {
-        PicturesLeftOut { count: self.count, first: &self.listed }
     }
 }
 
@@ -109,18 +97,16 @@ mod tests {
     }
 
     #[test]
-    fn a_report_lists_pictures_by_their_files_numbers_and_reasons_apart() {
+    fn all_pictures_are_counted_and_the_reasons_of_the_first_are_kept() {
         let mut left_out = LeftOut::default();
-        let at = |reason: &str| Missing {
+        let at = |frame, reason: &str| Missing {
             file: "a/film.gif".to_owned(),
             reason: format!("a/film.gif: {reason}"),
-            ..missing(4, TraceError::NoRing)
+            ..missing(frame, TraceError::NoRing)
         };
-        ["frame 4: no ring", "the file ends within it"].into_iter().for_each(|reason| left_out.take(&at(reason)));
-        let listed = left_out.told().first.iter().map(|listed| (listed.frame, &*listed.file, &*listed.reason));
-        let expected = [(4, "a/film.gif", "no ring"), (4, "a/film.gif", "the file ends within it")];
-        assert_eq!(listed.collect::<Vec<_>>(), expected);
-        assert_eq!(left_out.pictures[0], (4, "a/film.gif: frame 4: no ring".to_owned()));
+        (0..1500).for_each(|frame| left_out.take(&at(frame, &format!("frame {frame}: no ring"))));
+        assert_eq!((left_out.listed.count(), left_out.pictures.len()), (1500, 1000));
+        assert_eq!(left_out.pictures[4], (4, "a/film.gif: frame 4: no ring".to_owned()));
     }
 
     #[test]

@@ -52,8 +52,8 @@ pub use history::{CurveFitter, Histories, OBJECTS_PLAYED, Purpose};
 pub use overlay::{Drawn, DrawnPicture, GifAnimation, ObservedOverlay, Overlay, Y4mVideo, is_marked_png, marked_png};
 pub use plot::Svg;
 pub use report::{
-    Findings, MeaningOfB, PARAMETER_COLUMNS, PictureLeftOut, PicturesLeftOut, Report, fit_figure, meaning_of_v,
-    parameter_figure, parameter_rows, write_report,
+    Findings, MeaningOfB, PARAMETER_COLUMNS, PicturesLeftOut, Report, fit_figure, meaning_of_v, parameter_figure,
+    parameter_rows, write_report,
 };
 
 #[cfg(doctest)]

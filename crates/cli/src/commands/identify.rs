@@ -193,7 +193,7 @@ impl<'a> Outcome<'a> {
             truth: self.truth.as_ref(),
             no_motion: reason.filter(|_| !is_found),
             read_error: reason.filter(|_| *is_found),
-            left_out: self.left_out.told(),
+            left_out: Some(&self.left_out.listed),
             all_poses: Some(&all_poses),
         };
         file.finish_by(|file| write_report(file, &report))

@@ -23,7 +23,7 @@ pub(crate) fn write_identify_json(
 ) -> io::Result<()> {
     let objects: Vec<_> = results.iter().map(|result| ObjectJson { result, meaning: b }).collect();
     let pictures = left_out.pictures.iter().map(|(frame, reason)| PictureJson { frame: *frame, reason }).collect();
-    let left_out = LeftOutJson { count: left_out.count, pictures };
+    let left_out = LeftOutJson { count: left_out.listed.count(), pictures };
     let b = MeaningJson { point: b.point, unit: &b.unit, scale: b.scale.map(CameraScale::value) };
     let warnings =
         warnings.iter().map(|(warning, message)| InputWarningJson { code: warning.code(), message }).collect();

@@ -1,20 +1,16 @@
-use std::ffi::OsStr;
 use std::fmt::Write as _;
 use std::io;
-use std::path::Path;
 
 use freeform_motion::Truth;
-use freeform_motion::tracker::{FrameRanges, ObjectResult};
+use freeform_motion::tracker::ObjectResult;
 
 use super::document::{around_body, write_settings};
 use super::meaning_of_b::MeaningOfB;
 use super::object_section::ObjectSection;
+use super::pictures_left_out::PicturesLeftOut;
 use super::player::write_script;
 use crate::history::{Histories, OBJECTS_PLAYED, OBJECTS_WITH_POSES};
 use crate::plot::escape;
-
-/// Number of lines for left-out pictures with their reasons.
-const PICTURES_TOLD: usize = 10;
 
 /// What a report says. The default says nothing, of b in the coordinates of a file.
 #[derive(Debug, Default)]
@@ -36,7 +32,7 @@ pub struct Report<'a> {
     /// What ended the reading before the end of the input.
     pub read_error: Option<&'a str>,
     /// Pictures without an outline.
-    pub left_out: PicturesLeftOut<'a>,
+    pub left_out: Option<&'a PicturesLeftOut>,
     /// Where the poses of all objects are to be had, as a sentence; it is said where the report does not have them all.
     pub all_poses: Option<&'a str>,
 }
@@ -48,26 +44,6 @@ pub struct Findings<'a> {
     pub results: &'a [ObjectResult],
     /// What was found over time.
     pub histories: &'a Histories,
-}
-
-/// Pictures without an outline.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct PicturesLeftOut<'a> {
-    /// How many.
-    pub count: u64,
-    /// The first of them.
-    pub first: &'a [PictureLeftOut],
-}
-
-/// A picture without an outline.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct PictureLeftOut {
-    /// Number of the frame.
-    pub frame: u64,
-    /// Name of the file, with its folders.
-    pub file: String,
-    /// Why there is no outline, without the name and the number.
-    pub reason: String,
 }
 
 /// Writes a page that needs nothing but itself, one object after the other: parameters, warnings, a player of the first objects, and figures.
@@ -110,47 +86,13 @@ pub fn write_report(sink: &mut impl io::Write, report: &Report<'_>) -> io::Resul
             );
         }
     }
-    write_left_out(&mut body, &report.left_out);
+    report.left_out.into_iter().for_each(|left_out| left_out.write(&mut body));
     write_settings(&mut body, &report.settings, &report.command);
     if players > 0 {
         write_script(&mut body);
     }
     sink.write_all(body.as_bytes())?;
     sink.write_all(after.as_bytes())
-}
-
-/// Pictures without an outline: a line for each reason in a file, which is named once, by its last part.
-fn write_left_out(body: &mut String, PicturesLeftOut { count, first }: &PicturesLeftOut<'_>) {
-    if *count == 0 {
-        return;
-    }
-    let _ = writeln!(body, "<h2>Pictures without an outline: {count}</h2>\n<ul>");
-    let (mut lines, mut others): (Vec<(&PictureLeftOut, Vec<u64>)>, _) = (Vec::new(), Vec::new());
-    for picture in *first {
-        let is_same = |(known, _): &(&PictureLeftOut, _)| known.file == picture.file && known.reason == picture.reason;
-        match lines.iter().position(is_same) {
-            Some(line) => lines[line].1.push(picture.frame),
-            None if lines.len() < PICTURES_TOLD => lines.push((picture, vec![picture.frame])),
-            None => others.push(picture.frame),
-        }
-    }
-    let mut last_file = None;
-    for (picture, frames) in &lines {
-        if last_file.replace(&picture.file) != Some(&picture.file) {
-            let name = Path::new(&picture.file)
-                .file_name()
-                .map_or_else(|| picture.file.as_str().into(), OsStr::to_string_lossy);
-            let _ = write!(body, "<li>{}: ", escape(&name));
-        } else {
-            body.push_str("<li>");
-        }
-        let plural = if frames.len() == 1 { "" } else { "s" };
-        let ranges: FrameRanges = frames.iter().copied().collect();
-        let _ = writeln!(body, "frame{plural} {ranges}: {}</li>", escape(&picture.reason));
-    }
-    let more = count - lines.iter().map(|(_, frames)| frames.len() as u64).sum::<u64>();
-    let others: FrameRanges = others.into_iter().collect();
-    let _ = if more > 0 { writeln!(body, "<li>{more} more: {others}</li>\n</ul>") } else { writeln!(body, "</ul>") };
 }
 
 fn summary(results: &[ObjectResult]) -> String {
