@@ -10,7 +10,12 @@ use super::{
 };
 
 /// The poses of objects as they are stated, frame after frame: with angles that are [continuous](ContinuousAngle) within each
-/// [segment](Observation::segment) and may exceed half a turn, and in space if a camera scale is given. Memory does not grow with the number of frames.
+/// [segment](Observation::segment) and may exceed half a turn, and in space if a camera scale is given. Memory does not grow with the number of
+/// frames.
+///
+/// While the outlines leave open by how many whole turns the object turns from frame to frame ([`Observation::ambiguity`]), how far it has turned
+/// is not known, and the angle is not stated. The outline is in the same place by each of these turns: the matrix of an affine or projective pose
+/// is stated, and [`MotionState::pose_parameters`] has the angle between -pi and pi rad.
 ///
 /// ```
 /// use freeform_motion::{Tracker, TrackerSettings};
@@ -44,10 +49,12 @@ impl Poses {
         Self { scale, angles: HashMap::new() }
     }
 
-    /// The pose of an object after a frame, which is its next one; `None` where it is not known then. What the outline does not show is not finite.
+    /// The pose of an object after a frame, which is its next one; `None` where it is not known then. What the outline does not show, or leaves
+    /// open, is not finite.
     pub fn take(&mut self, observation: &Observation) -> Option<Vec<PoseParameter>> {
-        let (segment, state) = (observation.segment, observation.present_state()?);
-        Some(self.of_state(&observation.object, (segment, PoseSource::of(observation.is_accepted())), state))
+        let (segment, source) = (observation.segment, PoseSource::of(observation.is_accepted()));
+        let state = observation.present_state()?;
+        Some(self.of_state(&observation.object, (segment, source, WholeTurns::of(observation)), state))
     }
 
     /// Forgets an object: if the name comes again, it is that of a new one.
@@ -59,7 +66,7 @@ impl Poses {
     pub(super) fn of_state(
         &mut self,
         object: &str,
-        (segment, source): (usize, PoseSource),
+        (segment, source, whole_turns): (usize, PoseSource, WholeTurns),
         state: &MotionState,
     ) -> Vec<PoseParameter> {
         let mut pose = state.pose_parameters();
@@ -73,10 +80,30 @@ impl Poses {
             }
             angle.go_on(state, source, &mut pose);
         }
+        if whole_turns == WholeTurns::Ambiguous {
+            pose.iter_mut().filter(|parameter| parameter.name == "angle").for_each(|angle| {
+                (angle.value, angle.standard_deviation) = (f64::NAN, f64::INFINITY);
+            });
+        }
         if let Some(scale) = self.scale {
             pose.iter_mut().for_each(|parameter| to_space(parameter, scale));
         }
         pose
+    }
+}
+
+/// Whether the outlines tell how many whole turns an object makes from frame to frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum WholeTurns {
+    /// They do, or the smallest turn is to be taken.
+    Known,
+    /// They do not decide between turns, of which some may lead to another pose as well.
+    Ambiguous,
+}
+
+impl WholeTurns {
+    pub(super) fn of(observation: &Observation) -> Self {
+        if observation.ambiguity.is_some() { Self::Ambiguous } else { Self::Known }
     }
 }
 

@@ -7,8 +7,12 @@ use freeform_estimate::{
 use freeform_riccati::{CameraScale, MotionModel};
 
 use super::{
-    MethodSettings, Tracker, continuous_angle::PoseSource, not_stated::NotStated, observation::Observation,
-    poses::Poses, result::VELOCITY_NAMES,
+    MethodSettings, Tracker,
+    continuous_angle::PoseSource,
+    not_stated::NotStated,
+    observation::Observation,
+    poses::{Poses, WholeTurns},
+    result::VELOCITY_NAMES,
 };
 use crate::rejection::FrameRejection;
 
@@ -60,6 +64,7 @@ pub struct TrajectoryRow {
     /// Why each parameter of the motion that was not stated then was not, and the turn of the pose, where it was not.
     not_stated: Vec<(&'static str, NotStated)>,
     turn_not_stated: NotStated,
+    whole_turns: WholeTurns,
     velocity_not_stated: Option<NotStated>,
 }
 
@@ -67,7 +72,7 @@ pub struct TrajectoryRow {
 #[derive(Debug, Clone, PartialEq)]
 pub struct PoseAndMotion {
     /// The pose parameters as in [`MotionState::pose_parameters`], except that angles are [continuous](super::ContinuousAngle) from row to row of
-    /// a segment and may exceed half a turn.
+    /// a segment and may exceed half a turn, and are not finite while whole turns are ambiguous, as [`Poses`] says.
     pub pose: Vec<PoseParameter>,
     /// The motion.
     pub motion: MotionEstimate,
@@ -150,6 +155,7 @@ impl Trajectory {
             state: observation.state.clone(),
             not_stated: motion.map_or_else(Vec::new, |motion| observation.unstated(motion.model())),
             turn_not_stated: observation.turn_not_stated(),
+            whole_turns: WholeTurns::of(observation),
             velocity_not_stated: observation.velocity_not_stated(),
         });
     }
@@ -178,7 +184,7 @@ impl Trajectory {
         let mut poses = Poses::new(scale);
         let rows = self.rows.iter().map(|row| {
             let state = row.state()?;
-            let pose = poses.of_state(&row.object, (row.segment, PoseSource::of(row.accepted)), state);
+            let pose = poses.of_state(&row.object, (row.segment, PoseSource::of(row.accepted), row.whole_turns), state);
             let motion = state.motion();
             let velocity = row.velocity_not_stated.is_none().then(|| state.velocity_of_middle());
             Some(PoseAndMotion {
@@ -239,17 +245,19 @@ fn smooth_object(rows: &mut [&mut TrajectoryRow], noise: &ProcessNoise) -> Resul
         let (before, from) = rows.split_at_mut(start);
         // What the last frame does not tell of a constant motion, for an ambiguous turn say, none does; what it tells, all do.
         let velocity_not_stated = from[count - 1].velocity_not_stated;
+        let last = from[..count].iter().rev().find(|row| row.state().is_some());
+        let whole_turns = last.map_or(WholeTurns::Known, |row| row.whole_turns);
         let (segment, first) = (from[0].segment, &states[0]);
         let is_of_beginning =
             |row: &&mut &mut TrajectoryRow| row.accepted && row.segment == segment && row.state.is_none();
         for row in before.iter_mut().rev().take_while(is_of_beginning) {
             row.state = row.time.map(|time| first.predicted(time, noise));
-            row.velocity_not_stated = velocity_not_stated;
+            (row.velocity_not_stated, row.whole_turns) = (velocity_not_stated, whole_turns);
         }
         let known = from[..count].iter_mut().filter(|row| row.state().is_some());
         known.zip(states).for_each(|(row, state)| {
             row.state = Some(state);
-            row.velocity_not_stated = velocity_not_stated;
+            (row.velocity_not_stated, row.whole_turns) = (velocity_not_stated, whole_turns);
         });
     }
     Ok(())

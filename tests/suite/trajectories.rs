@@ -2,12 +2,12 @@
 use crate::common::seen_as;
 use crate::tracker::{egg, seen, tracker};
 use freeform_motion::{
-    Tracker,
+    Tracker, TrackerSettings,
     curve_fit::Outline,
     outline_io::OutlineFrame,
-    riccati::RigidMotion,
+    riccati::{MotionModel, RigidMotion},
     sim_camera::BuiltInShape,
-    tracker::{Method, NotSmoothed, Observation, SmoothingError, Trajectory},
+    tracker::{Method, NotSmoothed, NotStated, Observation, Poses, SmoothingError, Trajectory},
 };
 use nalgebra::Rotation2;
 
@@ -27,6 +27,60 @@ fn angles_of_a_trajectory_go_on_beyond_half_a_turn() {
         // Positive where omega is, clockwise.
         assert!((angle.value + 0.2 * frame as f64).abs() < 0.01, "frame {frame}: {angle:?}");
     }
+}
+
+/// An egg that turns by 170 degrees from frame to frame, or by 190 the other way round, and what is told of it in each.
+fn half_turns(mut tracker: Tracker, times: impl Iterator<Item = f64>) -> (Tracker, Trajectory, Vec<Observation>) {
+    let frames = (0..).zip(times).map(|(frame, time)| OutlineFrame { time, ..egg(frame, 2.97 * 10.0 * time, 0.0) });
+    let (mut trajectory, mut observations) = (Trajectory::default(), Vec::new());
+    tracker.follow(frames, |observation| {
+        trajectory.take(&observation);
+        observations.push(observation);
+    });
+    (tracker, trajectory, observations)
+}
+
+#[test]
+fn while_whole_turns_are_ambiguous_no_angle_is_stated_and_the_matrix_is() {
+    let times = || (0..20).map(|frame| 0.1 * f64::from(frame));
+    let (tracker, filtered, observations) = half_turns(tracker(Method::Filter), times());
+    let mut smoothed = filtered.clone();
+    assert_eq!(smoothed.smooth(&tracker), []);
+    let mut poses = Poses::new(None);
+    let of_frames: Vec<_> = observations.iter().map(|observation| poses.take(observation)).collect();
+    let (filtered, smoothed) = (filtered.poses(None), smoothed.poses(None));
+    for ((observation, of_frame), [filtered, smoothed]) in
+        observations.iter().zip(of_frames).zip(filtered.iter().zip(&smoothed).map(|(a, b)| [a, b])).skip(1)
+    {
+        let ambiguity = observation.ambiguity.as_ref().expect("190 degrees the other way round");
+        let apart = (ambiguity.turn - ambiguity.rival_turns[0]).abs();
+        assert!((apart - std::f64::consts::TAU).abs() < 1e-9, "{ambiguity:?}");
+        assert_eq!(observation.pose_not_stated(), NotStated::Ambiguous);
+        let poses = [filtered, smoothed].map(|known| known.as_ref().expect("followed").pose.clone());
+        for pose in poses.iter().chain(&of_frame) {
+            let stated: Vec<bool> = pose.iter().map(|number| number.value.is_finite()).collect();
+            assert_eq!(stated, [false, true, true], "{pose:?}");
+            assert_eq!(pose[0].standard_deviation, f64::INFINITY);
+        }
+    }
+    let affine = Tracker::new(TrackerSettings::new(Method::Filter, MotionModel::Affine)).expect("default settings");
+    let (_, affine, observations) = half_turns(affine, times());
+    let last = affine.poses(None).pop().flatten().expect("followed");
+    assert!(observations.last().is_some_and(|observation| observation.ambiguity.is_some()));
+    assert!(last.pose.iter().all(|number| number.value.is_finite()), "{:?}", last.pose);
+}
+
+#[test]
+fn once_a_frame_has_told_whole_turns_apart_the_angle_is_stated_with_those_that_may_have_been_missed() {
+    // A step of half the length tells a turn of 85 degrees from one of 95 the other way round.
+    let times = (0..20).map(|frame| 0.1 * f64::from(frame) - if frame > 9 { 0.05 } else { 0.0 });
+    let (_, trajectory, observations) = half_turns(tracker(Method::Filter), times);
+    let poses = trajectory.poses(None);
+    let angle = |frame: usize| poses[frame].as_ref().expect("followed").pose[0];
+    assert!(observations[9].ambiguity.is_some() && angle(9).value.is_nan());
+    let (truth, last) = (-2.97 * 10.0 * 1.85, angle(19));
+    assert!(observations[19].ambiguity.is_none() && last.value.is_finite(), "{:?}", observations[19].ambiguity);
+    assert!((last.value - truth).abs() < 4.0 * last.standard_deviation, "{last:?} {truth}");
 }
 
 #[test]

@@ -39,13 +39,10 @@ impl PoseHistory {
         }
         let pose = observation.time.zip(self.poses.take(observation));
         let Some((time, pose)) = pose else { return self.samples.skip() };
-        // Of the turns that the outlines leave open none is drawn.
-        let is_ambiguous = observation.ambiguity.is_some();
-        let mut parameters = Vec::new();
-        for PoseParameter { name, value, standard_deviation } in pose {
-            let is_stated = value.is_finite() && !(is_ambiguous && name == "angle");
-            parameters.push(is_stated.then_some([value, standard_deviation]));
-        }
+        let stated = |PoseParameter { value, standard_deviation, .. }: PoseParameter| {
+            value.is_finite().then_some([value, standard_deviation])
+        };
+        let parameters = pose.into_iter().map(stated).collect();
         self.samples.push(PoseSample { time, parameters });
         if self.samples.kept().len() > MOST_KEPT {
             self.samples.halve();
