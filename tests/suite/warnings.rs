@@ -79,7 +79,7 @@ const TRACING_EXAMPLES: [TracingWarning; 3] = [
 ];
 
 /// Warnings of where outlines come from that are none of tracing.
-const OF_ORIGIN: [OriginWarning; 7] = [
+const OF_ORIGIN: [OriginWarning; 8] = [
     OriginWarning::FilesOutOfOrder,
     OriginWarning::RateAssumed,
     OriginWarning::Interlaced,
@@ -87,6 +87,7 @@ const OF_ORIGIN: [OriginWarning; 7] = [
     OriginWarning::LabelLeftOut,
     OriginWarning::VoidBorders,
     OriginWarning::PixelAspect,
+    OriginWarning::NewAfterContact,
 ];
 
 /// Code and example of every section of the page: the lines that begin with `>`, as one.

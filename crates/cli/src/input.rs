@@ -256,6 +256,11 @@ impl Input {
         }
     }
 
+    /// What is known by now of how the outlines were found, beyond what was known before the first.
+    pub(crate) fn told_so_far(&self) -> OriginWarnings {
+        self.told_by_table().and(self.pictures().map_or(OriginWarnings::NONE, PictureInput::told_so_far))
+    }
+
     fn of_table(&self, warning: OriginWarning) -> String {
         format!("{}: {warning} (column warning: {})", self.name, warning.code())
     }

@@ -54,11 +54,11 @@ impl Traced {
         }
     }
 
-    /// The first object that may be one which was forgotten while it touched another, if there is any.
-    pub(crate) fn after_contact(&self) -> Option<AfterContact> {
+    /// The objects so far that may be others which were forgotten while they touched something.
+    pub(crate) fn after_contact(&self) -> &[AfterContact] {
         match self {
             Self::Greys(traced) => traced.after_contact(),
-            Self::Labels(_) => None,
+            Self::Labels(_) => &[],
         }
     }
 

@@ -1,6 +1,20 @@
 //! Objects that touch others, and what becomes of their names.
+use nalgebra::Point2;
 
-/// An object that was seen after another one had been forgotten while it touched a third: it may be that one.
+use crate::identity::PATIENCE;
+
+/// Farthest that an object may be, in diameters of both together, from where another was forgotten or is hidden: so that no third one has room
+/// between them. What is farther away has come from elsewhere, or has gone there unseen, which nobody could tell.
+const REACH: f64 = 1.0;
+
+/// Frames after the last contact in which something new may still be an object that was forgotten and is in no other: it is looked for by its name in
+/// half of them, which may begin with the contact, and then for as long again.
+const MEMORY: u64 = 2 * PATIENCE;
+
+/// Forgotten objects and pairs that are kept: of more than a user will look at, the first pairs and the last objects.
+const MOST_KEPT: usize = 100;
+
+/// An object that was seen after another one had been forgotten while it touched a third, near it and soon after: it may be that one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AfterContact {
     /// Number of the picture that shows it first.
@@ -11,44 +25,107 @@ pub struct AfterContact {
     pub forgotten: u64,
 }
 
-/// The objects that touch others, and what became of the first that was forgotten so.
+/// Where something was seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Place {
+    pub(crate) frame: u64,
+    pub(crate) centre: Point2<f64>,
+    /// Diameter of a disc around it.
+    pub(crate) diameter: f64,
+}
+
+impl Place {
+    /// Whether what is seen there may be what was seen here.
+    fn may_lead_to(&self, other: &Self) -> bool {
+        other.frame.saturating_sub(self.frame) <= MEMORY
+            && (other.centre - self.centre).norm() <= REACH * (self.diameter + other.diameter)
+    }
+}
+
+/// What is known of an object that has touched others.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Whereabouts {
+    /// It is in a joint object, and keeps its name if it is seen again.
+    Touching,
+    /// Its name is forgotten.
+    Forgotten,
+    /// It may be the object of this name, by itself or with what it touched.
+    MayBe(u64),
+    /// It may be one of several.
+    MayBeOneOfMany,
+}
+
+/// An object that has touched others.
+#[derive(Debug, Clone, Copy)]
+struct Hidden {
+    name: u64,
+    whereabouts: Whereabouts,
+    place: Place,
+}
+
+/// The objects that touch others, and what became of those that were forgotten so.
 #[derive(Debug, Default)]
 pub(crate) struct Contacts {
-    touching: Vec<u64>,
-    first_forgotten: Option<u64>,
-    first_after: Option<AfterContact>,
+    hidden: Vec<Hidden>,
+    after: Vec<AfterContact>,
 }
 
 impl Contacts {
-    /// An object that is not seen by itself, as it touches others.
-    pub(crate) fn touch(&mut self, name: u64) {
-        if !self.touching.contains(&name) {
-            self.touching.push(name);
+    /// An object that is not seen by itself, as it touches others: where they are together.
+    pub(crate) fn touch(&mut self, name: u64, place: Place) {
+        let touching = Hidden { name, whereabouts: Whereabouts::Touching, place };
+        match self.hidden.iter_mut().find(|hidden| hidden.is_touching(name)) {
+            Some(known) => *known = touching,
+            None => self.hidden.push(touching),
+        }
+        if self.hidden.len() > MOST_KEPT {
+            self.hidden.remove(0);
         }
     }
 
     /// An object is seen by itself.
-    pub(crate) fn see(&mut self, name: u64) {
-        self.touching.retain(|touching| *touching != name);
+    pub(crate) fn see(&mut self, name: u64, place: Place) {
+        self.hidden.retain(|hidden| !hidden.is_touching(name));
+        for hidden in self.hidden.iter_mut().filter(|hidden| hidden.whereabouts == Whereabouts::MayBe(name)) {
+            hidden.place = place;
+        }
     }
 
     /// An object is forgotten.
     pub(crate) fn forget(&mut self, name: u64) {
-        if self.touching.contains(&name) {
-            self.see(name);
-            self.first_forgotten.get_or_insert(name);
-        }
+        let touching = self.hidden.iter_mut().filter(|hidden| hidden.is_touching(name));
+        touching.for_each(|hidden| hidden.whereabouts = Whereabouts::Forgotten);
     }
 
     /// A picture shows an object that has no name yet, and gets this one.
-    pub(crate) fn name(&mut self, frame: u64, name: u64) {
-        let after = self.first_forgotten.map(|forgotten| AfterContact { frame, name, forgotten });
-        self.first_after = self.first_after.or(after);
+    pub(crate) fn name(&mut self, name: u64, place: Place) {
+        for hidden in self.hidden.iter_mut().filter(|hidden| hidden.place.may_lead_to(&place)) {
+            hidden.whereabouts = match hidden.whereabouts {
+                Whereabouts::Touching => continue,
+                Whereabouts::Forgotten => {
+                    hidden.place = place;
+                    Whereabouts::MayBe(name)
+                }
+                Whereabouts::MayBe(_) | Whereabouts::MayBeOneOfMany => Whereabouts::MayBeOneOfMany,
+            };
+            if self.after.len() < MOST_KEPT {
+                self.after.push(AfterContact { frame: place.frame, name, forgotten: hidden.name });
+            }
+        }
+        self.hidden.retain(|hidden| {
+            hidden.whereabouts == Whereabouts::Touching || place.frame.saturating_sub(hidden.place.frame) <= MEMORY
+        });
     }
 
-    /// The first new object since one was forgotten.
-    pub(crate) fn first_after(&self) -> Option<AfterContact> {
-        self.first_after
+    /// The new objects that may be forgotten ones, in the order of their pictures: the first of them, if they are very many.
+    pub(crate) fn after(&self) -> &[AfterContact] {
+        &self.after
+    }
+}
+
+impl Hidden {
+    fn is_touching(&self, name: u64) -> bool {
+        self.name == name && self.whereabouts == Whereabouts::Touching
     }
 }
 
@@ -56,19 +133,57 @@ impl Contacts {
 mod tests {
     use super::*;
 
+    fn at(frame: u64, x: f64) -> Place {
+        Place { frame, centre: Point2::new(x, 0.0), diameter: 10.0 }
+    }
+
+    /// Names of the new objects and of those that they may be.
+    fn pairs(contacts: &Contacts) -> Vec<(u64, u64)> {
+        contacts.after().iter().map(|after| (after.name, after.forgotten)).collect()
+    }
+
+    /// Two objects touch in frames 0 to 9, and are forgotten.
+    fn two_forgotten() -> Contacts {
+        let mut contacts = Contacts::default();
+        (0..10).for_each(|frame| [0, 1].into_iter().for_each(|name| contacts.touch(name, at(frame, 0.0))));
+        [0, 1].into_iter().for_each(|name| contacts.forget(name));
+        contacts
+    }
+
     #[test]
     fn only_what_was_forgotten_while_it_touched_another_may_be_what_is_new() {
         let mut contacts = Contacts::default();
-        contacts.touch(0);
-        contacts.touch(1);
+        [0, 1].into_iter().for_each(|name| contacts.touch(name, at(0, 0.0)));
         // It is seen by itself again, and leaves later; another one was never touched.
-        contacts.see(1);
+        contacts.see(1, at(1, 0.0));
         [1, 2].into_iter().for_each(|name| contacts.forget(name));
-        contacts.name(30, 3);
-        assert_eq!(contacts.first_after(), None);
+        contacts.name(3, at(8, 0.0));
+        assert_eq!(contacts.after(), []);
         contacts.forget(0);
-        contacts.name(40, 4);
-        contacts.name(41, 5);
-        assert_eq!(contacts.first_after(), Some(AfterContact { frame: 40, name: 4, forgotten: 0 }));
+        contacts.name(4, at(9, 0.0));
+        assert_eq!(contacts.after(), [AfterContact { frame: 9, name: 4, forgotten: 0 }]);
+    }
+
+    #[test]
+    fn all_pairs_of_new_and_forgotten_objects_are_told() {
+        let mut contacts = two_forgotten();
+        // Both together, and one of them when they part, much later and elsewhere.
+        contacts.name(2, at(10, 0.0));
+        (11..200).for_each(|frame| contacts.see(2, at(frame, frame as f64)));
+        contacts.name(3, at(200, 205.0));
+        assert_eq!(pairs(&contacts), [(2, 0), (2, 1), (3, 0), (3, 1)]);
+        // By then all are known again.
+        (201..300).for_each(|frame| contacts.see(2, at(frame, 200.0)));
+        contacts.name(4, at(300, 200.0));
+        assert_eq!(pairs(&contacts).len(), 4);
+    }
+
+    #[test]
+    fn what_is_new_far_away_or_long_after_is_not_what_was_forgotten() {
+        for (frame, x, may_be) in [(12, 15.0, true), (12, 25.0, false), (39, 0.0, true), (40, 0.0, false)] {
+            let mut contacts = two_forgotten();
+            contacts.name(7, at(frame, x));
+            assert_eq!(!contacts.after().is_empty(), may_be, "{frame} {x}");
+        }
     }
 }

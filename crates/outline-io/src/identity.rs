@@ -2,12 +2,12 @@ use nalgebra::{Point2, Vector2};
 
 use crate::affine_moment_invariants::AffineMomentInvariants;
 use crate::assignment::assign;
-use crate::contacts::{AfterContact, Contacts};
+use crate::contacts::{AfterContact, Contacts, Place};
 use crate::picture_error::TraceError;
 use crate::trace::TracedOutline;
 
 /// Most frames that an object may be missing in before it is forgotten.
-const PATIENCE: u64 = 15;
+pub(crate) const PATIENCE: u64 = 15;
 
 /// Farthest that an object may be from where it is expected, in its diameters; half as much more for every frame missed.
 const REACH: f64 = 1.0;
@@ -201,6 +201,12 @@ impl Known {
     }
 }
 
+impl Place {
+    fn of(frame: u64, traced: &TracedOutline) -> Self {
+        Self { frame, centre: traced.centre, diameter: traced.outline.bounding_box().size().norm() }
+    }
+}
+
 /// Follows objects from picture to picture: gives those of each picture the names that they had before, as [`Selection`] says.
 #[derive(Debug)]
 pub struct Identities {
@@ -217,10 +223,11 @@ impl Identities {
         Self { selection, known: Vec::new(), next_name: 0, contacts: Contacts::default() }
     }
 
-    /// The first object that may be one which was forgotten while it touched another, if there is any.
+    /// The objects so far that may be others which were forgotten while they touched something, near them and soon after, in the order of their
+    /// pictures; of very many the first hundred.
     #[must_use]
-    pub fn after_contact(&self) -> Option<AfterContact> {
-        self.contacts.first_after()
+    pub fn after_contact(&self) -> &[AfterContact] {
+        self.contacts.after()
     }
 
     /// How many objects of a picture are needed.
@@ -298,7 +305,8 @@ impl Identities {
             let count = within().count();
             touching = touching.or((count > 1).then_some(count));
             if count > 1 {
-                within().for_each(|(name, _)| self.contacts.touch(*name));
+                let place = Place { frame, centre: around.centre(), diameter: around.size().norm() };
+                within().for_each(|(name, _)| self.contacts.touch(*name, place));
             }
             count < 2
         });
@@ -331,7 +339,7 @@ impl Identities {
         for (known, seen) in self.known.iter_mut().zip(seen_as) {
             if let Some(seen) = seen {
                 names[seen] = Some(known.name);
-                self.contacts.see(known.name);
+                self.contacts.see(known.name, Place::of(frame, &traced[seen]));
                 known.see(frame, &traced[seen]);
             }
         }
@@ -339,7 +347,7 @@ impl Identities {
             let name = name.unwrap_or_else(|| {
                 let name = self.next_name;
                 self.next_name += 1;
-                self.contacts.name(frame, name);
+                self.contacts.name(name, Place::of(frame, &traced));
                 self.known.push(Known::seen(name, frame, &traced));
                 name
             });

@@ -26,16 +26,19 @@ pub enum OriginWarning {
     VoidBorders,
     /// The outlines keep their shape as they turn only if pixels are not as high as wide.
     PixelAspect,
+    /// An object may be another one, which touched something before and was forgotten: [`AfterContact`](crate::AfterContact).
+    NewAfterContact,
 }
 
 impl OriginWarning {
     /// All of them, what makes outlines worthless first.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::TracingDoubtful,
         Self::MovesBesideRest,
         Self::MovesBeside,
         Self::FilesOutOfOrder,
         Self::LabelInParts,
+        Self::NewAfterContact,
         Self::LabelLeftOut,
         Self::PixelAspect,
         Self::RateAssumed,
@@ -57,6 +60,7 @@ impl OriginWarning {
             Self::LabelLeftOut => "label_left_out",
             Self::VoidBorders => "void_borders",
             Self::PixelAspect => "pixel_aspect",
+            Self::NewAfterContact => "new_after_contact",
         }
     }
 
@@ -90,6 +94,9 @@ impl fmt::Display for OriginWarning {
             }
             Self::PixelAspect => {
                 "the object keeps its shape as it turns only with pixels of another aspect, with which its angles are others"
+            }
+            Self::NewAfterContact => {
+                "an object may be one that was forgotten while it touched something: results of two objects may be those of one"
             }
         })
     }

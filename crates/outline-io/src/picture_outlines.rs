@@ -179,8 +179,8 @@ impl<S: Iterator<Item = Result<PictureFrame, PictureError>>> PictureOutlines<S> 
         self.identities.keep(name, frame);
     }
 
-    /// The first object that may be one which was forgotten while it touched another, if there is any.
-    pub fn after_contact(&self) -> Option<AfterContact> {
+    /// As [`Identities::after_contact`](crate::Identities::after_contact).
+    pub fn after_contact(&self) -> &[AfterContact] {
         self.identities.after_contact()
     }
 

@@ -93,8 +93,8 @@ impl<I: Iterator<Item = Result<PictureFrame, PictureError>>> TracedPictures<I> {
         }
     }
 
-    /// The first object that may be one which was forgotten while it touched another, if there is any.
-    pub fn after_contact(&self) -> Option<AfterContact> {
+    /// As [`Identities::after_contact`](crate::Identities::after_contact).
+    pub fn after_contact(&self) -> &[AfterContact] {
         self.outlines.after_contact()
     }
 

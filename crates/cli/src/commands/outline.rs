@@ -8,7 +8,7 @@ use freeform_motion::outline_io::{
 use super::simulate::SequenceError;
 use crate::args::OutlineArgs;
 use crate::awaited::Waiting;
-use crate::failure::{Failure, note, warn};
+use crate::failure::{Failure, warn, warn_of};
 use crate::input::Input;
 use crate::interrupt;
 use crate::left_out::MissingWarnings;
@@ -77,7 +77,7 @@ fn trace_all(args: &OutlineArgs, mut input: Input, sink: &mut Sink) -> Result<Tr
                 let warnings = if !std::mem::replace(&mut is_begun, true) || input.has_labels() {
                     input.origin_warnings().into_iter().map(|(warning, _)| warning).collect()
                 } else {
-                    input.told_by_table()
+                    input.told_so_far()
                 };
                 table.write(&frame, warnings)?;
                 if let (Some(drawings), Some(source)) = (&mut drawings, &source) {
@@ -100,8 +100,8 @@ fn trace_all(args: &OutlineArgs, mut input: Input, sink: &mut Sink) -> Result<Tr
     }
     if !args.quiet {
         progress.pause(|| input.tell_in_the_end());
-        let of_contact = input.pictures().and_then(PictureInput::note_of_contact);
-        of_contact.iter().for_each(|told| progress.pause(|| note(told)));
+        let of_contact = input.pictures().and_then(PictureInput::warning_of_contact);
+        of_contact.iter().for_each(|(warning, told)| progress.pause(|| warn_of(warning.code(), told)));
     }
     warnings.finish().filter(|_| !args.quiet).for_each(|warning| progress.pause(|| warn(&warning)));
     drawings.map_or(Ok(()), Drawings::finish)?;
@@ -120,6 +120,7 @@ struct Table<'a> {
 
 impl<'a> Table<'a> {
     fn new(args: &OutlineArgs, input: &mut Input, sink: &'a mut Sink) -> Self {
+        let follows_all = input.pictures().is_some_and(|pictures| pictures.options().follows_all());
         let options = WriterOptions {
             arc_column: true,
             object_column: names_objects(input),
@@ -128,8 +129,8 @@ impl<'a> Table<'a> {
             deviation_column: args.deviations || input.has_deviation_column(),
             resolution: None,
             warnings: OriginWarnings::NONE,
-            // A table that is copied says it in its rows, and a label may fall apart in a later mask than the first.
-            warning_column: input.has_warning_column() || input.has_labels(),
+            // A table that is copied says it in its rows, a label may fall apart in a later mask than the first, and objects touch when they do.
+            warning_column: input.has_warning_column() || input.has_labels() || follows_all,
         };
         let (format, comments) = (TableFormat::of(&args.output), std::mem::take(&mut input.comments));
         Self { sink: Some(sink), writer: None, format, options, comments, outlines: 0 }

@@ -1,8 +1,11 @@
 //! What may be wrong with how pictures are read and traced.
-use freeform_motion::outline_io::{AfterContact, OriginWarning};
+use freeform_motion::outline_io::{AfterContact, OriginWarning, OriginWarnings};
 
 use super::{ASSUMED_RATE, PictureInput};
 use crate::label_choice::label_warnings;
+
+/// Objects that are told to be perhaps others.
+const OBJECTS_TOLD: usize = 5;
 
 impl PictureInput {
     /// What is to be said after all have been read: of the labels, or of what the outlines say of the pixels, with the codes.
@@ -11,13 +14,24 @@ impl PictureInput {
         if of_labels.is_empty() { self.warning_of_aspect().into_iter().collect() } else { of_labels }
     }
 
-    /// What to do about an object that has another number after it has touched another one.
-    pub(crate) fn note_of_contact(&self) -> Option<String> {
-        let AfterContact { frame, name, forgotten } = self.traced.after_contact()?;
-        Some(format!(
-            "object {name}, new in frame {frame}, may be object {forgotten}, by itself or with what it touched for long: 'freeform \
-             identify' of the pictures themselves looks for its edges meanwhile, so that it may keep its number"
-        ))
+    /// What to do about objects that have other numbers after they have touched others, with the code.
+    pub(crate) fn warning_of_contact(&self) -> Option<(OriginWarning, String)> {
+        let after = self.traced.after_contact();
+        let each: Vec<String> = after.chunk_by(|a, b| a.name == b.name).map(may_be).collect();
+        let (told, others) = each.split_at_checked(OBJECTS_TOLD).unwrap_or((&each, &[]));
+        let others = if others.is_empty() { String::new() } else { format!("; and {} more", others.len()) };
+        let message = format!(
+            "{}{others}: by itself or with what it touched for long; 'freeform identify' of the pictures themselves looks for its edges \
+             meanwhile, so that it may keep its number",
+            told.join("; ")
+        );
+        (!after.is_empty()).then_some((OriginWarning::NewAfterContact, message))
+    }
+
+    /// What the rows of a table of the pictures read so far should say, beyond what was known before the first.
+    pub(crate) fn told_so_far(&self) -> OriginWarnings {
+        let is_any = !self.traced.after_contact().is_empty();
+        is_any.then_some(OriginWarning::NewAfterContact).into_iter().collect()
     }
 
     /// What is wrong with the labels of masks read so far, with the codes.
@@ -55,4 +69,11 @@ impl PictureInput {
         warnings.extend(self.label_warnings());
         warnings
     }
+}
+
+/// Which forgotten objects a new one may be.
+fn may_be(pairs: &[AfterContact]) -> String {
+    let [AfterContact { frame, name, .. }, ..] = pairs else { return String::new() };
+    let forgotten: Vec<String> = pairs.iter().map(|pair| pair.forgotten.to_string()).collect();
+    format!("object {name}, new in frame {frame}, may be object {}", forgotten.join(" or "))
 }

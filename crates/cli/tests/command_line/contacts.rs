@@ -3,6 +3,8 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::Path;
 
+use serde_json::Value;
+
 use crate::support::{Pear, json, pictures, run, stderr, succeed};
 
 /// Pictures of a pear that turns by 0.06 rad and travels by 6 pixels a frame along a bar, which it touches; the folder.
@@ -25,27 +27,48 @@ fn an_object_that_gets_another_number_as_it_touched_another_for_long_is_told_wit
         let output =
             run(&format!("outline {pictures} --light --objects all --fps 25 --output {}", table.display()), "");
         let text = std::fs::read_to_string(table).expect("a table");
-        let rows = text.lines().filter(|line| line.starts_with(|first: char| first.is_ascii_digit()));
-        let names: BTreeSet<String> = rows.filter_map(|row| row.split(',').nth(4).map(str::to_owned)).collect();
-        (names.len(), stderr(&output))
+        let rows = text.lines().filter(|row| row.starts_with(|first: char| first.is_ascii_digit()));
+        let cells: Vec<Vec<&str>> = rows.map(|row| row.split(',').collect()).collect();
+        let names: BTreeSet<&str> = cells.iter().map(|cells| cells[4]).collect();
+        let marked: BTreeSet<u32> = cells
+            .iter()
+            .filter(|cells| cells.last() == Some(&"new_after_contact"))
+            .map(|cells| cells[0].parse().expect("a frame"))
+            .collect();
+        (names.len(), marked, stderr(&output))
     };
-    let (names, told) = outline(&passing(folder.path(), "long", 70..210));
-    assert!(names > 2, "{names}: {told}");
-    assert!(told.contains("freeform: note: object 2, new in frame ") && told.contains("'freeform identify'"), "{told}");
+    let (names, marked, told) = outline(&passing(folder.path(), "long", 70..210));
+    assert_eq!(names, 4, "{told}");
+    let pairs = "object 2, new in frame 22, may be object 0 or 1; object 3, new in frame 34, may be object 0 or 1: ";
+    assert!(told.contains(&format!("freeform: warning[new_after_contact]: {pairs}")), "{told}");
+    assert!(told.contains("'freeform identify'"), "{told}");
+    // The table says so of all outlines since then, and is heard where it is read.
+    assert_eq!(marked, (22..40).collect());
+    let told = stderr(&run(&format!("identify {}", folder.path().join("o.csv").display()), ""));
+    assert!(told.contains("freeform: warning[new_after_contact]: "), "{told}");
     // For a short while it keeps its number, and nothing is said.
-    let (names, told) = outline(&passing(folder.path(), "short", 120..150));
-    assert!(names == 2 && !told.contains("may be object"), "{names}: {told}");
+    let (names, marked, told) = outline(&passing(folder.path(), "short", 120..150));
+    assert!(names == 2 && marked.is_empty() && !told.contains("may be object"), "{names}: {told}");
 }
 
 #[test]
 fn an_object_is_followed_through_a_long_contact_in_the_pictures_themselves() {
     let folder = tempfile::tempdir().expect("a folder");
     let pictures = passing(folder.path(), "long", 70..210);
-    let found = json(&succeed(&format!("identify {pictures} --light --objects all --fps 25 --quiet --json"), ""));
-    // In frames of before, of the contact and of after it; rows run downwards, so that its turn is positive.
-    let is_whole = |object: &&serde_json::Value| object["frames"].as_u64().is_some_and(|frames| frames > 24);
-    let object = found["objects"].as_array().expect("a list").iter().find(is_whole).expect("an object that is kept");
-    let omega = &object["parameters"]["omega"];
-    let [value, std] = ["value", "std"].map(|field| omega[field].as_f64().expect("a number"));
-    assert!((value - 1.5).abs() < 4.0 * std && std < 0.4, "{value} {std}");
+    let lines = succeed(&format!("track {pictures} --light --objects all --fps 25 --quiet"), "");
+    // They touch in frames 6 to 33, and are apart then.
+    let is_after = |line: &Value| line["frame"].as_u64().is_some_and(|frame| frame > 33);
+    let of_pear: Vec<Value> = lines.lines().map(json).filter(|line| line["object"] == "1").collect();
+    assert!(of_pear.iter().filter(|line| line["frame"].as_u64().is_some_and(|frame| frame < 6)).count() == 6);
+    let after: Vec<&Value> = of_pear.iter().filter(|line| is_after(line)).collect();
+    assert!(after.len() == 6 && after.iter().all(|line| line["accepted"] == true), "{after:?}");
+    // Rows run downwards, so that its turn is positive.
+    for line in after {
+        let number = |of: &Value| ["value", "std"].map(|field| of[field].as_f64().expect("a number"));
+        let [omega, of_omega] = number(&line["parameters"]["omega"]);
+        assert!((omega - 1.5).abs() < 0.02 && of_omega < 0.3, "{omega} {of_omega}");
+        let [angle, of_angle] = number(&line["pose"]["angle"]);
+        let truth = 0.06 * line["frame"].as_f64().expect("a number");
+        assert!((angle - truth).abs() < 4.0 * of_angle && of_angle < 0.05, "{angle} {of_angle} {truth}");
+    }
 }
