@@ -53,7 +53,7 @@ pub use self::{
     poses::Poses,
     recording::{Followed, ReadAhead, Recorded},
     result::{ObjectResult, VELOCITY_NAMES},
-    result_csv::{AdaptiveColumns, TraceWriter, write_results},
+    result_csv::{AdaptiveColumns, POINT_COLUMNS, TraceWriter, write_results},
     settings::{Method, MethodSettings, TrackerError, TrackerSettings},
     trajectory::{NotSmoothed, PoseAndMotion, SmoothingError, Trajectory, TrajectoryRow},
     trajectory_csv::write_trajectory,

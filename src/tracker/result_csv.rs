@@ -156,8 +156,8 @@ pub(super) fn velocity_cells(velocity: Option<&PointVelocity>) -> [String; 4] {
     [velocity.velocity.x, deviations.x, velocity.velocity.y, deviations.y].map(|number| number.to_string())
 }
 
-/// Names of the columns of the point that moves with this velocity, where it is in that frame.
-pub(super) const POINT_COLUMNS: [&str; 2] = ["point_x", "point_y"];
+/// Names of the columns of the point that `v1` and `v2` are the velocity of, where it is in that frame.
+pub const POINT_COLUMNS: [&str; 2] = ["point_x", "point_y"];
 
 /// What is in them.
 pub(super) fn point_cells(velocity: Option<&PointVelocity>) -> [String; 2] {

@@ -7,7 +7,7 @@ use freeform_motion::estimate::{MotionEstimate, PointVelocity};
 use freeform_motion::outline_io::{OutlineFrame, ReadError, ReadErrorKind, Span};
 use freeform_motion::riccati::MotionModel;
 use freeform_motion::tracker::{
-    Followed, Method, NotStated, Observation, ReadAhead, Recorded, Tracker, Trajectory, VELOCITY_NAMES,
+    Followed, Method, NotStated, Observation, POINT_COLUMNS, ReadAhead, Recorded, Tracker, Trajectory, VELOCITY_NAMES,
 };
 use numpy::{IntoPyArray as _, PyArray1};
 use pyo3::exceptions::{PyUserWarning, PyValueError};
@@ -243,12 +243,15 @@ impl Recording {
         set_motions(&table, model, &motions)?;
         // The columns that came later are behind all others, as in the tables of the program.
         table.set_item("segment", PyArray1::from_iter(py, segments))?;
-        if let Some(velocities) = velocities {
-            set_velocities(&table, &velocities)?;
+        if let Some(velocities) = &velocities {
+            set_velocities(&table, velocities)?;
         }
         let reasons = rows.iter().map(|row| row.rejection.as_ref().map_or_else(String::new, ToString::to_string));
         table.set_item("reason", texts(py, reasons))?;
         table.set_item("unstated", texts(py, unstated))?;
+        if let Some(velocities) = velocities {
+            set_points(&table, &velocities)?;
+        }
         Ok(table)
     }
 }
@@ -275,6 +278,16 @@ fn set_velocities(table: &Bound<'_, PyDict>, velocities: &[Option<PointVelocity>
         let deviations = stated().map(|velocity| Some(velocity?.standard_deviations()[index]));
         table.set_item(name, or_nan(values).into_pyarray(table.py()))?;
         table.set_item(format!("{name}_std"), or_nan(deviations).into_pyarray(table.py()))?;
+    }
+    Ok(())
+}
+
+/// Columns for the point that these velocities belong to, NaN where they are not stated.
+fn set_points(table: &Bound<'_, PyDict>, velocities: &[Option<PointVelocity>]) -> PyResult<()> {
+    for (index, name) in POINT_COLUMNS.into_iter().enumerate() {
+        let stated = velocities.iter().map(|velocity| velocity.filter(PointVelocity::is_finite));
+        let values = stated.map(|velocity| Some(velocity?.point[index]));
+        table.set_item(name, or_nan(values).into_pyarray(table.py()))?;
     }
     Ok(())
 }

@@ -113,7 +113,7 @@ def test_the_adaptive_method_has_a_motion_and_no_pose(table):
     assert "angle" not in tracked and np.isfinite(tracked["omega"][-1]) and np.isnan(tracked["omega_std"]).all()
 
 
-LATER_COLUMNS = ["v1", "v1_std", "v2", "v2_std", "reason", "unstated"]
+LATER_COLUMNS = ["v1", "v1_std", "v2", "v2_std", "reason", "unstated", "point_x", "point_y"]
 
 
 def empty_values(tracked, row):
@@ -135,6 +135,10 @@ def test_the_velocity_of_the_middle_and_the_reasons_come_behind_all_other_column
     expected = ff.identify(table)["right"].velocity
     found = [np.asarray(tracked[name])[-1] for name in LATER_COLUMNS[:4]]
     assert found == [expected.velocity[0], expected.std[0], expected.velocity[1], expected.std[1]]
+    points = np.column_stack([np.asarray(tracked[name]) for name in ("point_x", "point_y")])
+    assert points[-1].tolist() == list(expected.point)
+    # Where the velocity is not stated there is no point.
+    assert (np.isnan(points) == np.isnan(np.asarray(tracked["v1"]))[:, np.newaxis]).all() and np.isnan(points[0]).all()
     texts = {name: np.asarray(tracked[name]).tolist() for name in ("reason", "unstated")}
     assert texts["reason"] == [""] * 30 and texts["unstated"][-1] == ""
     assert texts["unstated"][0] == "; ".join(f"{name} unknown" for name in ("angle", "x", "y", "omega", "b1", "b2", "v1", "v2"))
@@ -186,7 +190,7 @@ def test_masks_have_the_same_columns_as_tables(masks, table):
 
 def test_the_adaptive_method_has_reasons_and_no_velocity_of_the_middle(table):
     tracked = ff.track(table, method="adaptive")
-    assert list(tracked)[-3:] == ["segment", "reason", "unstated"] and "v1" not in tracked
+    assert list(tracked)[-3:] == ["segment", "reason", "unstated"] and not {"v1", "point_x"} & set(tracked)
     for row in range(len(tracked["frame"])):
         assert list(told(tracked, row)) == empty_values(tracked, row)
     assert set(told(tracked, 0).values()) == {"unknown"} and tracked["unstated"][-1] == ""
@@ -194,7 +198,7 @@ def test_the_adaptive_method_has_reasons_and_no_velocity_of_the_middle(table):
 
 def test_the_camera_scale_divides_the_velocity_of_the_middle_in_the_table(table):
     plain, scaled = ff.track(table), ff.track(table, scale=0.5)
-    for name in LATER_COLUMNS[:4]:
+    for name in [*LATER_COLUMNS[:4], "point_x", "point_y"]:
         np.testing.assert_allclose(scaled[name], 2 * plain[name])
     assert scaled["unstated"].tolist() == plain["unstated"].tolist()
 

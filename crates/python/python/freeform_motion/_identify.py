@@ -186,9 +186,10 @@ def track(
         shown its turn for the first time, since nobody knows how far it had turned until then, and where an edge was found not to be of the
         object; `v1` and `v2`, each with its `_std`, the velocity of
         the middle of the object (motion filter), in the unit of `x` and `y` per second; `reason`, why the frame was not accepted; `unstated`,
-        which values of the row are not stated and why, such as `omega ambiguous; b1 ambiguous`, by the words of `Observation.not_stated`.
+        which values of the row are not stated and why, such as `omega ambiguous; b1 ambiguous`, by the words of `Observation.not_stated`;
+        `point_x` and `point_y`, where that middle is (motion filter), which need not be at `x` and `y`.
         NaN where something is not known, an empty text where there is nothing to tell; in a dict these two columns are arrays of objects.
-        Angles are in radians since the first frame and continuous; x and y say where the centre of the first outline is.
+        Angles are in radians since the first frame and continuous, NaN while whole turns are ambiguous; x and y say where the centre of the first outline is.
 
     Raises
     ------
