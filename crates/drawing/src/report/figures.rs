@@ -19,9 +19,9 @@ const RANGES_OF_MOST: f64 = 8.0;
 /// Room above and below the range of most values, as a share of it.
 const ROOM_AROUND_MOST: f64 = 0.5;
 
-/// Shortest time at which nothing is stated that is marked in a figure, as a share of its time: the first frames of a recording, which never tell
-/// a motion, need no mark.
-const SHORTEST_SPAN: f64 = 0.05;
+/// Shortest time at which nothing is stated that is marked in a figure, in usual steps of its line: within a recording a single frame leaves two. At its
+/// beginning, where the first frame tells no motion, and at its end it leaves one, which may be that of a line of which points are left out.
+const SHORTEST_SPAN: f64 = 1.5;
 
 /// What is seen around the points, as a share of their extent.
 const SURROUNDINGS: f64 = 0.15;
@@ -199,14 +199,15 @@ impl History {
         Some((first, known.next_back().unwrap_or(first)))
     }
 
-    /// The times of the recording, from the first frame of the object on, at which a line does not run, as pale areas; none where all of them are too short
-    /// to be seen as such.
+    /// The times of the recording, from the first frame of the object on, at which a line does not run, as pale areas: all but a single frame at either
+    /// end.
     pub(super) fn spans_without(&self, line: &[Vec<[f64; 2]>]) -> Option<Curve> {
         let (first, last) = self.start.zip(self.end)?;
         let ends = line.iter().filter_map(|run| Some((run.first()?[0], run.last()?[0])));
         let (mut from, mut runs) = (first, Vec::new());
+        let shortest = SHORTEST_SPAN * usual_step(line);
         for (begins, ends) in ends.chain([(last, last)]) {
-            if begins - from > SHORTEST_SPAN * (last - first) {
+            if begins - from > shortest {
                 runs.push(vec![[from, 0.0], [begins, 0.0]]);
             }
             from = from.max(ends);
@@ -238,6 +239,13 @@ impl History {
             Curve { name: "identified".to_owned(), look: Look::Line, runs },
         ]
     }
+}
+
+/// The median time from point to point of a line; 0 where it has single points alone.
+fn usual_step(line: &[Vec<[f64; 2]>]) -> f64 {
+    let mut steps: Vec<f64> = line.iter().flat_map(|run| run.windows(2).map(|pair| pair[1][0] - pair[0][0])).collect();
+    let middle = steps.len() / 2;
+    if steps.is_empty() { 0.0 } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 /// The y axis of a parameter where few of its values and band edges would hide how the others go: the range of most of them, and a true value.
@@ -291,8 +299,8 @@ mod tests {
     fn the_time_goes_on_to_the_end_of_the_recording_and_what_is_not_stated_is_marked() {
         let estimate = MotionEstimate::new(MotionModel::Rigid, &[1.0, 2.0, 3.0], Some(&[0.1, 0.1, 0.1]));
         let estimates = (0..=50).map(|frame| {
-            // Not in the first frame, in some in the middle, and since the object was lost.
-            let is_known = (1..20).contains(&frame) || (30..40).contains(&frame);
+            // Not in the first frame, in one, in some in the middle, and since the object was lost.
+            let is_known = (1..20).contains(&frame) && frame != 9 || (30..40).contains(&frame);
             (f64::from(frame), is_known.then(|| estimate.parameters().collect()))
         });
         let history = History {
@@ -305,8 +313,10 @@ mod tests {
             parameter_panels(&history, "", MotionModel::Rigid.into(), None, &MeaningOfB::default()).swap_remove(0);
         assert_eq!((panel.x_from, panel.x_to), (Some(0.0), Some(80.0)));
         let spans = panel.curves.iter().find(|curve| curve.look == Look::Spans).expect("what is not stated");
-        assert_eq!(spans.runs, [[[19.0, 0.0], [30.0, 0.0]], [[39.0, 0.0], [80.0, 0.0]]]);
-        assert_eq!(history.spans_without(&[vec![[1.0, 3.0], [80.0, 3.0]]]), None);
+        assert_eq!(spans.runs, [[[8.0, 0.0], [10.0, 0.0]], [[19.0, 0.0], [30.0, 0.0]], [[39.0, 0.0], [80.0, 0.0]]]);
+        let line = |from: u32| vec![(from..=80).map(|time| [f64::from(time), 3.0]).collect()];
+        assert_eq!(history.spans_without(&line(1)), None);
+        assert_eq!(history.spans_without(&line(2)).expect("two frames").runs, [[[0.0, 0.0], [2.0, 0.0]]]);
         let of_pixels = MeaningOfB::in_pictures(false, 1.0, 1.0, None);
         let history = History { residuals: vec![[0.0, 0.1]], ..history };
         let residuals = residual_panels(&history, &of_pixels).swap_remove(0);

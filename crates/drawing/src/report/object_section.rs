@@ -16,10 +16,10 @@ use crate::plot::{escape, panel_svg};
 
 /// What a reader should know of the figures of a pose, of the parameters, of their standard deviations, and of the bound.
 const POSES: &str = "The turn since the first frame, and the place of the middle of the first outline. The true values lie within the \
-                     bands in 95 of 100 cases. Where nothing is stated there is no line, and the figure is grey.";
+                     bands in 95 of 100 cases; bands that are far wider than most go beyond the figure.";
 const PARAMETERS: &str = "The parameters of the motion as they were known from the frames up to each time";
-const TO_THE_END: &str =
-    "The time goes to the end of the recording. Where nothing is stated there is no line, and the figure is grey.";
+const TO_THE_END: &str = "The time goes to the end of the recording. Where nothing is stated there is no line, and the figure is grey, but for a \
+                          single frame at either end.";
 const DEVIATIONS: &str = "How far the parameters are likely to be off, from the frames up to each time: the true value is within 1.96 \
                           standard deviations in 95 of 100 cases.";
 const BOUND: &str = "The dashed line is the Cramer-Rao bound: the least standard deviation that any unbiased method can have, if the outline \
@@ -76,7 +76,8 @@ impl ObjectSection<'_> {
         }
         body.push_str("<p class=\"alert\">Warnings</p>\n<ul>\n");
         for warning in &self.result.warnings {
-            let _ = writeln!(body, "<li>{}</li>", escape(&warning.to_string()));
+            let _ =
+                writeln!(body, "<li><code>warning[{}]</code>: {}</li>", warning.code(), escape(&warning.to_string()));
         }
         body.push_str("</ul>\n");
     }
@@ -90,7 +91,12 @@ impl ObjectSection<'_> {
 
     fn write_poses(&self, body: &mut String, history: &History) {
         if let Some((poses, model)) = history.poses.as_ref().zip(self.result.motion.model()) {
-            write_panels(body, "Where it was", POSES, &pose_panels(history, poses, model, self.b));
+            write_panels(
+                body,
+                "Where it was",
+                &format!("{POSES} {TO_THE_END}"),
+                &pose_panels(history, poses, model, self.b),
+            );
         }
     }
 

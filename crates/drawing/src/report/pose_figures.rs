@@ -8,7 +8,14 @@ use super::meaning_of_b::MeaningOfB;
 use crate::figure::{Curve, Look, Panel};
 use crate::history::{History, PoseHistory};
 
-/// The pose of an object against time, one panel for each of its parameters, with bands; lines and bands end where nothing is stated.
+/// Room for bands above and below all values, in half a usual band.
+const ROOM_FOR_BANDS: f64 = 3.0;
+
+/// The same as a share of the range of all values.
+const ROOM_AROUND_VALUES: f64 = 0.25;
+
+/// The pose of an object against time, one panel for each of its parameters, with bands; lines and bands end where nothing is stated, and are empty
+/// where nothing ever is.
 /// Positions are divided by a camera scale, as those of a trajectory are.
 pub(crate) fn pose_panels(history: &History, poses: &PoseHistory, model: MotionModel, b: &MeaningOfB) -> Vec<Panel> {
     let names = Trajectory::pose_names(model).iter().enumerate();
@@ -16,6 +23,7 @@ pub(crate) fn pose_panels(history: &History, poses: &PoseHistory, model: MotionM
         let (title, y_label, factor) = axis(name, b);
         let (mut line, mut band) = (Vec::new(), Vec::new());
         let (mut run, mut lower, mut upper) = (Vec::new(), Vec::new(), Vec::new());
+        let mut all = Vec::new();
         let mut end_run = |run: &mut Vec<_>, lower: &mut Vec<_>, upper: &mut Vec<_>| {
             if !run.is_empty() {
                 line.push(std::mem::take(run));
@@ -29,6 +37,7 @@ pub(crate) fn pose_panels(history: &History, poses: &PoseHistory, model: MotionM
             }
             if let Some([value, deviation]) = stated {
                 let (time, value, half) = (kept.value.time, factor * value, factor * BAND * deviation);
+                all.push([value, half]);
                 run.push([time, value]);
                 lower.push([time, value - half]);
                 upper.push([time, value + half]);
@@ -48,10 +57,28 @@ pub(crate) fn pose_panels(history: &History, poses: &PoseHistory, model: MotionM
             curves,
             x_from: history.start,
             x_to: history.end,
+            y_limits: limits_of_values(&all),
             ..Panel::default()
         }
     });
-    panels.filter(|panel| !panel.curves[1].runs.is_empty()).collect()
+    // A method without poses has no figures of them.
+    if poses.samples().is_empty() { Vec::new() } else { panels.collect() }
+}
+
+/// The y axis of values with half the widths of their bands, where some of these are so wide that they would hide how the values go, as while nothing is
+/// seen of an object: the range of the values, with room for a usual band.
+fn limits_of_values(values: &[[f64; 2]]) -> Option<[f64; 2]> {
+    let mut halves: Vec<f64> = values.iter().map(|[_, half]| *half).collect();
+    halves.sort_unstable_by(f64::total_cmp);
+    let usual = *halves.get(halves.len() / 2)?;
+    let around = |room: f64| {
+        let edges = values.iter().map(|[value, half]| (value - half.min(room), value + half.min(room)));
+        edges.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (l, h)| [low.min(l), high.max(h)])
+    };
+    let ([lowest, highest], [low, high]) = (around(f64::INFINITY), around(0.0));
+    let room = f64::max(ROOM_FOR_BANDS * usual, ROOM_AROUND_VALUES * (high - low));
+    let is_hidden = highest - lowest > high - low + 2.0 * room;
+    is_hidden.then_some([low - room, high + room])
 }
 
 /// Title and label of a parameter of a pose, and what its numbers are multiplied by.
@@ -133,6 +160,20 @@ fn differs(a: &[Vec<[f64; 2]>], b: &[Vec<[f64; 2]>]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn bands_that_are_far_wider_than_most_do_not_make_a_flat_line_of_the_values() {
+        let values = |lost: f64| -> Vec<[f64; 2]> {
+            let half = |i: u32| if (20..30).contains(&i) { lost } else { 0.01 };
+            (0..60).map(|i| [0.01 * f64::from(i), half(i)]).collect()
+        };
+        let [low, high] = limits_of_values(&values(50.0)).expect("limits");
+        assert!(low > -0.2 && low < -0.01 && high > 0.6 && high < 0.8, "{low} {high}");
+        assert_eq!(limits_of_values(&values(0.02)), None);
+        assert_eq!(limits_of_values(&[]), None);
+        // Of an object at rest all bands are seen whole.
+        assert_eq!(limits_of_values(&[[1.0, 0.1]; 9]), None);
+    }
 
     #[test]
     fn a_series_has_gaps_where_nothing_is_known() {
