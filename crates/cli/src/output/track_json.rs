@@ -111,8 +111,8 @@ impl PoseJson {
         b: &MeaningOfB,
     ) -> Option<Self> {
         let names = family.pose_names(method);
-        let numbers = names.iter().enumerate().map(|(index, name)| {
-            let known = pose.and_then(|pose| pose.get(index));
+        let numbers = names.iter().map(|name| {
+            let known = pose.and_then(|pose| pose.iter().find(|number| number.name == *name));
             let known = known.filter(|number| number.value.is_finite() && number.standard_deviation.is_finite());
             let number = PoseNumber {
                 value: known.map(|number| number.value),

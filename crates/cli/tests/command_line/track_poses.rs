@@ -22,14 +22,47 @@ fn both_ways(csv: &str, options: &str) -> (Vec<Value>, Vec<Vec<(String, String)>
     (lines, rows.map(|cells| header.iter().cloned().zip(cells).collect()).collect())
 }
 
+/// Asks that lines and rows have the same poses and segments, with the same reasons; how many of the numbers are stated.
+fn agree(lines: &[Value], rows: &[Vec<(String, String)>], names: &[&str]) -> usize {
+    assert_eq!(lines.len(), rows.len());
+    let mut stated = 0;
+    for (line, row) in lines.iter().zip(rows) {
+        let cell = |name: &str| &row.iter().find(|(column, _)| column == name).expect("a column").1;
+        assert_eq!(line["segment"].to_string(), *cell("segment"));
+        for name in names {
+            let number = &line["pose"][name];
+            for (of, column) in [("value", (*name).to_owned()), ("std", format!("{name}_std"))] {
+                let of_table = cell(&column).parse::<f64>().ok();
+                let is_same = match (number[of].as_f64(), of_table) {
+                    (Some(of_line), Some(of_table)) => (of_line - of_table).abs() <= 1e-12 * of_table.abs(),
+                    (of_line, of_table) => of_line.is_none() && of_table.is_none(),
+                };
+                assert!(is_same, "{column}: {} {line}", cell(&column));
+            }
+            // A reason stands where a value does not, and nowhere else.
+            let reason = number["reason"].as_str().unwrap_or_default();
+            let in_row = cell("unstated").split("; ").find_map(|each| each.strip_prefix(&format!("{name} ")));
+            assert_eq!(reason, in_row.unwrap_or_default(), "{line}");
+            assert_eq!(number["reason"], line["unstated"][name], "{line}");
+            stated += usize::from(number["value"].is_f64());
+        }
+    }
+    stated
+}
+
+/// The rows of a sequence, so many frames and seconds later.
+fn later(csv: &str, frames: f64, seconds: f64) -> String {
+    let rows = csv.lines().filter(|line| line.starts_with(|first: char| first.is_ascii_digit())).map(|line| {
+        let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
+        format!("{},{},{},{}\n", cells[0] + frames, cells[1] + seconds, cells[2], cells[3])
+    });
+    rows.collect()
+}
+
 /// A glider, then a van in its place, for which it is given up.
 fn glider_then_van() -> String {
     let van = sequence("--shape van --seconds 1.5");
-    let later = van.lines().filter(|line| line.starts_with(|first: char| first.is_ascii_digit())).map(|line| {
-        let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
-        format!("{},{},{},{}\n", cells[0] + 30.0, cells[1] + 1.0, cells[2], cells[3])
-    });
-    sequence("--shape glider --omega 2 --seconds 1") + &later.collect::<String>()
+    sequence("--shape glider --omega 2 --seconds 1") + &later(&van, 30.0, 1.0)
 }
 
 #[test]
@@ -46,32 +79,65 @@ fn every_line_has_the_pose_and_the_segment_that_the_trajectory_has() {
         (&begun_anew, "", &["angle", "x", "y"], 2),
     ] {
         let (lines, rows) = both_ways(csv, options);
-        assert_eq!(lines.len(), rows.len());
-        let (mut stated, mut last_segment) = (0, 0);
-        for (line, row) in lines.iter().zip(&rows) {
-            let cell = |name: &str| &row.iter().find(|(column, _)| column == name).expect("a column").1;
-            assert_eq!(line["segment"].to_string(), *cell("segment"));
-            last_segment = line["segment"].as_u64().expect("a number");
-            for name in names {
-                let number = &line["pose"][name];
-                for (of, column) in [("value", (*name).to_owned()), ("std", format!("{name}_std"))] {
-                    let of_table = cell(&column).parse::<f64>().ok();
-                    let is_same = match (number[of].as_f64(), of_table) {
-                        (Some(of_line), Some(of_table)) => (of_line - of_table).abs() <= 1e-12 * of_table.abs(),
-                        (of_line, of_table) => of_line.is_none() && of_table.is_none(),
-                    };
-                    assert!(is_same, "{options} {column}: {} {line}", cell(&column));
-                }
-                // A reason stands where a value does not, and nowhere else.
-                let reason = number["reason"].as_str().unwrap_or_default();
-                let in_row = cell("unstated").split("; ").find_map(|each| each.strip_prefix(&format!("{name} ")));
-                assert_eq!(reason, in_row.unwrap_or_default(), "{line}");
-                assert_eq!(number["reason"], line["unstated"][name], "{line}");
-                stated += usize::from(number["value"].is_f64());
-            }
-        }
+        let stated = agree(&lines, &rows, names);
         assert!(stated > lines.len(), "{stated} numbers of {} poses", lines.len());
+        let last_segment = lines.last().expect("lines")["segment"].as_u64().expect("a number");
         assert_eq!(last_segment + 1, segments, "{options}");
+    }
+}
+
+#[test]
+fn frames_that_are_rejected_before_the_first_one_used_have_no_pose_and_count_for_nothing() {
+    let later = later(&sequence(""), 2.0, 0.1);
+    let csv = "frame,time,x,y\n0,0,1,1\n1,0.05,1,1\n1,0.05,2,1\n".to_owned() + &later;
+    let (lines, rows) = both_ways(&csv, "");
+    assert!(agree(&lines, &rows, &["angle", "x", "y"]) > lines.len());
+    for line in &lines[..2] {
+        assert!(line["accepted"] == false && line["reason"].is_string(), "{line}");
+        assert_eq!((&line["pose"]["x"]["value"], &line["pose"]["x"]["reason"]), (&Value::Null, &"unknown".into()));
+    }
+    // The angle is that since the first frame that was used, in the one segment there is.
+    let alone = both_ways(&("frame,time,x,y\n".to_owned() + &later), "").0;
+    let poses = |lines: &[Value]| lines.iter().map(|line| line["pose"].clone()).collect::<Vec<_>>();
+    assert_eq!(poses(&lines[2..]), poses(&alone));
+    assert!(lines.iter().all(|line| line["segment"] == 0), "{lines:?}");
+}
+
+#[test]
+fn the_last_line_of_an_object_that_has_left_has_no_pose_and_its_name_begins_anew() {
+    // A body that is seen for as long as another is waited for, turned by 0.1 rad from frame to frame.
+    let body = |object: &str, frame: u32, turns: u32| {
+        let (sin, cos) = (0.1 * f64::from(turns)).sin_cos();
+        let corners = [[-0.5, -0.3], [0.5, -0.3], [0.5, 0.1], [0.1, 0.3], [-0.5, 0.3]].into_iter();
+        let row = move |[x, y]: [f64; 2]| {
+            format!("{object},{frame},{},{},{}\n", f64::from(frame) / 20.0, cos * x + sin * y, cos * y - sin * x)
+        };
+        let between =
+            |[a, b]: [[f64; 2]; 2]| (0..5).map(move |i| [0, 1].map(|k| a[k] + f64::from(i) / 5.0 * (b[k] - a[k])));
+        let next = corners.clone().cycle().skip(1);
+        corners.zip(next).flat_map(move |(a, b)| between([a, b])).map(row).collect::<String>()
+    };
+    let rows = (0..1030).map(|frame| {
+        let left = if frame < 10 || frame >= 1020 { body("left", frame, frame) } else { String::new() };
+        left + &body("stays", frame, 0)
+    });
+    let csv = "object,frame,time,x,y\n".to_owned() + &rows.collect::<String>();
+    let lines: Vec<Value> = succeed("track - --quiet", &csv).lines().map(json).collect();
+    let of_left: Vec<&Value> = lines.iter().filter(|line| line["object"] == "left").collect();
+    let closed = of_left.iter().position(|line| line["phase"] == "closed").expect("a closing line");
+    assert_eq!((closed, of_left.len()), (10, 21));
+    let (last, line) = (of_left[closed - 1], of_left[closed]);
+    assert_eq!((&line["frame"], &line["time"], &line["accepted"]), (&last["frame"], &last["time"], &false.into()));
+    assert!(line["segment"].is_null() && line["parameters"]["omega"]["value"].is_f64(), "{line}");
+    for name in ["angle", "x", "y"] {
+        let number = &line["pose"][name];
+        let told = (&number["value"], &number["std"], &number["reason"], &line["unstated"][name]);
+        assert_eq!(told, (&Value::Null, &Value::Null, &"unknown".into(), &"unknown".into()), "{line}");
+    }
+    // It is another object by the same name: its angle is that since it came.
+    for (turns, line) in (1..10).zip(&of_left[closed + 2..]) {
+        let [angle, std] = ["value", "std"].map(|of| line["pose"]["angle"][of].as_f64().expect("an angle"));
+        assert!((angle - 0.1 * f64::from(turns)).abs() < 4.0 * std + 1e-3 && std < 0.05, "{turns}: {angle} {std}");
     }
 }
 
