@@ -49,7 +49,7 @@ pub enum Warning {
         /// Time in seconds of the last frame in which it was followed, if a motion was found.
         last_known: Option<f64>,
     },
-    /// The object was lost and searched for in the last frames; the motion is the last one known.
+    /// The object was searched for in the last frames, or begun anew by them, and its motion is not known again yet: it is the last one known.
     Reacquiring {
         /// Time in seconds of the last frame that was used while the motion was known.
         last_known: f64,
@@ -280,7 +280,10 @@ fn write_lost(f: &mut fmt::Formatter<'_>, last_known: Option<f64>) -> fmt::Resul
 
 fn write_reacquiring(f: &mut fmt::Formatter<'_>, last_known: f64) -> fmt::Result {
     let last_known = of_time(last_known);
-    write!(f, "the object was lost and searched for at the end; its motion was last known at {last_known} s")
+    write!(
+        f,
+        "the object is searched for or begun anew at the end, and its motion is not known again yet; it was last known at {last_known} s"
+    )
 }
 
 fn write_change(f: &mut fmt::Formatter<'_>, dynamics: Option<Dynamics>) -> fmt::Result {

@@ -306,7 +306,10 @@ pub enum ReadErrorKind {
         frame: u64,
     },
     /// Rows with and without an arc value in one outline.
-    #[error("some rows of frame {frame} of object {object:?} have an arc and some do not")]
+    #[error(
+        "some rows of frame {frame} of object {object:?} have an arc and some do not: an outline is made of open arcs, each with its name, or of \
+         closed contours without one"
+    )]
     MixedArcs {
         /// Object of the outline.
         object: String,

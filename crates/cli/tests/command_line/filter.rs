@@ -127,7 +127,9 @@ fn nothing_is_stated_of_an_object_that_was_given_up_until_the_next_one_is_known(
     let document = json(&succeed("identify - --format json", &first_one_then_another(30)));
     let object = first_object(&document);
     assert_eq!(object["parameters"]["omega"]["value"], Value::Null);
-    for text in ["searched for at the end; its motion was last known at 0.4667 s", "started again 1 time"] {
+    for text in
+        ["begun anew at the end, and its motion is not known again yet; it was last known at 0.4667 s", "again 1 time"]
+    {
         assert!(warnings(object).iter().any(|warning| warning.contains(text)), "{text}: {:?}", warnings(object));
     }
     let document = json(&succeed("identify - --format json", &first_one_then_another(45)));
