@@ -14,8 +14,9 @@ Examples:
 
 /// Trace outlines in pictures and video, or take those of a file; write them as CSV or Parquet.
 ///
-/// Each picture is one frame. Polygons of COCO, labelme and TrackMate, CSV and Parquet are taken as they are. Of each picture the outer outline of the largest object, or
-/// of all objects, is traced to a fraction of a pixel; holes are filled unless `--contours all` is given or chosen. An object clipped by the edge of the picture gives open arcs. y runs upwards from the lower edge.
+/// Each picture is one frame. Polygons of COCO, labelme and TrackMate, CSV and Parquet are taken as they are. Of each picture the outer
+/// outline of the largest object, or of all objects, is traced to a fraction of a pixel; holes are filled unless `--contours all` is given
+/// or chosen. An object clipped by the edge of the picture gives open arcs. y runs upwards from the lower edge.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES, after_long_help = format!("{EXAMPLES}\n\n{}", picture_inputs("outline")))]
 pub(crate) struct OutlineArgs {

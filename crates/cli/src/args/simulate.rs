@@ -27,11 +27,11 @@ middle of the object in the last frame. Where the motion changes with time, all 
 time is told. 'freeform identify' prints this truth next to its result.";
 
 const PICTURES: &str = "\
-The folder gets \
-000000.png, 000001.png, ... and truth.csv, a row for each body in each picture: its middle in pixels (y upwards from the lower \
-left corner), its angle and omega (rad, positive clockwise), its velocity, whether it is whole and seen, and the first picture that shows it whole with where its \
-middle was there: first_frame, first_x and first_y, empty before. Bodies are numbered as in the scene, objects of 'freeform identify' as they are found: \
-they relate a body to the object that lies there in that picture.";
+The folder gets 000000.png, 000001.png, ... and truth.csv, a row for each body in each picture: its middle in pixels (y upwards \
+from the lower left corner), its angle and omega (rad, positive clockwise), its velocity, whether it is whole and seen, and the \
+first picture that shows it whole with where its middle was there: first_frame, first_x and first_y, empty before. Bodies are \
+numbered as in the scene, objects of 'freeform identify' as they are found: they relate a body to the object that lies there in \
+that picture.";
 
 /// What stands behind the options: examples, shapes, the output, scenes.
 fn after_help() -> String {
