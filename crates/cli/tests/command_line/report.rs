@@ -171,6 +171,16 @@ fn what_is_stated_in_no_frame_is_named_in_the_report_and_not_drawn_as_an_empty_f
 }
 
 #[test]
+fn an_angle_that_may_be_whole_turns_off_is_not_drawn_and_the_warning_has_its_code() {
+    let page = report(&sequence("--omega 29.7 --fps 10 --seconds 2"), "");
+    let poses = page.split("<h3>Where it was</h3>").nth(1).and_then(|rest| rest.split("<h3>").next());
+    let poses = poses.expect("a section");
+    assert!(poses.contains("Not stated in any frame, and so not drawn: Angle since the first frame."), "{poses}");
+    assert_eq!(poses.matches("<svg").count(), 2, "{poses}");
+    assert!(page.contains("<li><code>warning[ambiguous]</code>: ambiguous: another turn explains"), "{page}");
+}
+
+#[test]
 fn bands_are_told_of_the_method_that_has_them_and_the_width_of_the_picture_has_its_unit() {
     let csv = sequence("--seconds 2");
     let (filter, adaptive) = (report(&csv, ""), report(&csv, "--method adaptive"));

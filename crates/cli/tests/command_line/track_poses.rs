@@ -87,6 +87,17 @@ fn every_line_has_the_pose_and_the_segment_that_the_trajectory_has() {
 }
 
 #[test]
+fn an_angle_that_may_be_whole_turns_off_is_in_neither_and_the_place_is() {
+    // By 170 degrees from frame to frame, or by 190 the other way round.
+    let (lines, rows) = both_ways(&sequence("--omega 29.7 --fps 10 --seconds 2"), "");
+    assert_eq!(agree(&lines, &rows, &["angle", "x", "y"]), 2 * (lines.len() - 1));
+    for line in &lines[1..] {
+        assert_eq!(line["pose"]["angle"]["reason"], "ambiguous", "{line}");
+        assert_eq!(line["ambiguity"]["parameters"][0], "omega", "{line}");
+    }
+}
+
+#[test]
 fn frames_that_are_rejected_before_the_first_one_used_have_no_pose_and_count_for_nothing() {
     let later = later(&sequence(""), 2.0, 0.1);
     let csv = "frame,time,x,y\n0,0,1,1\n1,0.05,1,1\n1,0.05,2,1\n".to_owned() + &later;

@@ -258,8 +258,8 @@ fn arcs_are_consecutive_and_not_mixed_with_closed_rows() {
         &[],
         "in.csv:6: column arc: arc \"a\" comes a second time in frame 0 of object \"0\": its rows must follow each other",
     );
-    let mixed =
-        "column arc: some rows of frame 0 of object \"0\" have an arc and some do not: an outline is made of open arcs";
+    let mixed = "column arc: some rows of frame 0 of object \"0\" have an arc and some do not: an outline is made of open arcs, each with its name, \
+                 or of closed contours without one";
     refused(format!("{text}0,0,3,3,\n"), &[], &format!("in.csv:6: {mixed}"));
     refused("frame,time,x,y,arc\n0,0,0,0,\n0,0,1,0,1\n", &[], &format!("in.csv:3: {mixed}"));
 }
