@@ -74,13 +74,24 @@ fn while_whole_turns_are_ambiguous_no_angle_is_stated_and_the_matrix_is() {
 fn once_a_frame_has_told_whole_turns_apart_the_angle_is_stated_with_those_that_may_have_been_missed() {
     // A step of half the length tells a turn of 85 degrees from one of 95 the other way round.
     let times = (0..20).map(|frame| 0.1 * f64::from(frame) - if frame > 9 { 0.05 } else { 0.0 });
-    let (_, trajectory, observations) = half_turns(tracker(Method::Filter), times);
+    let (tracker, mut trajectory, observations) = half_turns(tracker(Method::Filter), times.clone());
     let poses = trajectory.poses(None);
     let angle = |frame: usize| poses[frame].as_ref().expect("followed").pose[0];
     assert!(observations[9].ambiguity.is_some() && angle(9).value.is_nan());
     let (truth, last) = (-2.97 * 10.0 * 1.85, angle(19));
     assert!(observations[19].ambiguity.is_none() && last.value.is_finite(), "{:?}", observations[19].ambiguity);
     assert!((last.value - truth).abs() < 4.0 * last.standard_deviation, "{last:?} {truth}");
+    assert!(last.standard_deviation > std::f64::consts::TAU, "{last:?}");
+    // All frames together tell it of each, as the motion is constant.
+    assert_eq!(trajectory.smooth(&tracker), []);
+    for (time, smoothed) in times.zip(trajectory.poses(None)) {
+        let [angle, ..] = smoothed.expect("known").pose[..] else { panic!("an angle") };
+        let off = angle.value + 2.97 * 10.0 * time;
+        assert!(off.abs() < 4.0 * angle.standard_deviation + 1e-3 && angle.standard_deviation < 0.01, "{angle:?}");
+    }
+    // Within a turn the last one was known before.
+    let off = last.value - truth;
+    assert!((off - std::f64::consts::TAU * (off / std::f64::consts::TAU).round()).abs() < 0.01, "{last:?} {truth}");
 }
 
 #[test]
