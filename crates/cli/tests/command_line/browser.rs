@@ -175,7 +175,7 @@ fn the_player_is_worked_by_keys_slider_and_buttons() {
     assert_eq!(seen["marks"], "M30 0v1");
     assert!(text("left", "now").starts_with("Frame 29") && seen["left"]["rejected"] == false);
     let omega = text("left", "omega").split_whitespace().next().and_then(|text| text.parse::<f64>().ok());
-    assert!(omega.is_some_and(|omega| (omega - 1.5708).abs() < 0.005), "{omega:?}");
+    assert!(omega.is_some_and(|omega| (omega - std::f64::consts::FRAC_PI_2).abs() < 0.005), "{omega:?}");
     assert!(number("left", "way") > number("right", "way"));
     assert!(number("left", "points") > 150 * 8, "a dot for each point");
     assert!(text("zoomed", "view") != text("left", "view") && seen["pressed"] == "true");

@@ -129,7 +129,7 @@ fn the_last_line_of_an_object_that_has_left_has_no_pose_and_its_name_begins_anew
         corners.zip(next).flat_map(move |(a, b)| between([a, b])).map(row).collect::<String>()
     };
     let rows = (0..1030).map(|frame| {
-        let left = if frame < 10 || frame >= 1020 { body("left", frame, frame) } else { String::new() };
+        let left = if !(10..1020).contains(&frame) { body("left", frame, frame) } else { String::new() };
         left + &body("stays", frame, 0)
     });
     let csv = "object,frame,time,x,y\n".to_owned() + &rows.collect::<String>();
