@@ -182,6 +182,13 @@ def test_turns_between_which_the_outlines_do_not_decide_are_ambiguous_in_the_tab
     assert list(reasons) == empty_values(tracked, -1)
 
 
+def test_an_angle_that_may_be_whole_turns_off_is_nan_and_the_place_is_not():
+    # 170 degrees from frame to frame, which may as well be 190 the other way round.
+    tracked = ff.track(ff.outline_table(ff.simulate("bird", omega=29.7, seconds=1.0, fps=10.0)))
+    assert told(tracked, -1)["angle"] == "ambiguous" and np.isnan(tracked["angle"]).all()
+    assert np.isfinite(tracked["x"][1:]).all() and np.isfinite(tracked["y"][1:]).all()
+
+
 def test_masks_have_the_same_columns_as_tables(masks, table):
     of_masks = ff.track(masks, fps=30)
     assert list(of_masks) == list(ff.track(table))
