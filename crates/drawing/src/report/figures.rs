@@ -19,8 +19,8 @@ const RANGES_OF_MOST: f64 = 8.0;
 /// Room above and below the range of most values, as a share of it.
 const ROOM_AROUND_MOST: f64 = 0.5;
 
-/// Shortest time at which nothing is stated that is marked in a figure, in usual steps of its line: within a recording a single frame leaves two. At its
-/// beginning, where the first frame tells no motion, and at its end it leaves one, which may be that of a line of which points are left out.
+/// Shortest time at which nothing is stated that is marked in a figure, in usual steps of its line: within a recording a single frame leaves two. At
+/// its beginning, where the first frame tells no motion, and at its end it leaves one, which may be that of a line of which points are left out.
 const SHORTEST_SPAN: f64 = 1.5;
 
 /// What is seen around the points, as a share of their extent.
@@ -199,8 +199,8 @@ impl History {
         Some((first, known.next_back().unwrap_or(first)))
     }
 
-    /// The times of the recording, from the first frame of the object on, at which a line does not run, as pale areas: all but a single frame at either
-    /// end.
+    /// The times of the recording, from the first frame of the object on, at which a line does not run, as pale areas: all but a single frame at
+    /// either end.
     pub(super) fn spans_without(&self, line: &[Vec<[f64; 2]>]) -> Option<Curve> {
         let (first, last) = self.start.zip(self.end)?;
         let ends = line.iter().filter_map(|run| Some((run.first()?[0], run.last()?[0])));

@@ -65,8 +65,8 @@ pub(crate) fn pose_panels(history: &History, poses: &PoseHistory, model: MotionM
     if poses.samples().is_empty() { Vec::new() } else { panels.collect() }
 }
 
-/// The y axis of values with half the widths of their bands, where some of these are so wide that they would hide how the values go, as while nothing is
-/// seen of an object: the range of the values, with room for a usual band.
+/// The y axis of values with half the widths of their bands, where some of these are so wide that they would hide how the values go, as while
+/// nothing is seen of an object: the range of the values, with room for a usual band.
 fn limits_of_values(values: &[[f64; 2]]) -> Option<[f64; 2]> {
     let mut halves: Vec<f64> = values.iter().map(|[_, half]| *half).collect();
     halves.sort_unstable_by(f64::total_cmp);
