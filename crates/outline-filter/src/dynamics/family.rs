@@ -19,7 +19,7 @@ use crate::{
 use freeform_estimate::StateFormat;
 
 /// Numbers of all motions.
-const ALL: [usize; UNMODELLED] = [0, 1, 2, 3, 4, 5, 6, 7, 8];
+const ALL: [usize; UNMODELLED] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10];
 
 /// Tests of what a family of motions leaves out, over frames: generalised likelihood ratios.
 #[derive(Debug, Clone, Default)]
@@ -78,12 +78,16 @@ impl FamilyTests {
     fn estimated(&self, model: MotionModel, of_side: f64) -> UnmodelledEstimate {
         let moments = UnmodelledMatrix::zeros();
         let mut estimate = UnmodelledEstimate { family: None, is_beyond_doubt: false, displacement: 0.0, moments };
-        if self.series.frames() < tuning::FEWEST_FRAMES || self.weight <= 0.0 {
+        if self.weight <= 0.0 {
             return estimate;
         }
-        let (groups, of_camera) = left_out_by(model);
-        let least = tuning::MATTERS * self.sigma + tuning::OF_NOISE * self.sigma * self.sigma;
+        let (groups, of_pictures) = left_out_by(model);
         let dependence = self.series.dependence();
+        if self.series.frames() < tuning::FEWEST_FRAMES {
+            self.add_possible(&mut estimate.moments, &self.fit(&[]), &EDGES, &dependence);
+            return estimate;
+        }
+        let least = tuning::MATTERS * self.sigma + tuning::OF_NOISE * self.sigma * self.sigma;
         let scatter = self.scatter.about(&self.fit(&ALL));
         let mut known = self.fit(&[]);
         let (mut found, mut beyond_doubt): (Vec<Found>, Vec<Found>) = Default::default();
@@ -125,9 +129,9 @@ impl FamilyTests {
                 estimate.moments[(*i, *j)] = known.sizes[a] * known.sizes[b] + known.covariance[(a, b)];
             }
         }
-        for members in of_camera {
+        for members in of_pictures {
             if members.iter().all(|i| !known.numbers.contains(i)) {
-                self.add_possible(&mut estimate.moments, &known, (members, model), &dependence);
+                self.add_possible(&mut estimate.moments, &known, members, &dependence);
             }
         }
         if !estimate.is_beyond_doubt
@@ -139,9 +143,8 @@ impl FamilyTests {
     }
 
     /// Usual size of a motion that a camera brings in, where it does. The object is within the picture, which is no smaller than where it has been.
-    fn usual_size(&self, number: usize, model: MotionModel) -> f64 {
+    fn usual_size(&self, number: usize) -> f64 {
         match number {
-            _ if model == MotionModel::Affine && EDGES.contains(&number) => tuning::USUAL_ERROR,
             _ if PERSPECTIVE.contains(&number) => tuning::USUAL_ERROR / self.reach,
             READ_OUT => tuning::USUAL_READ_OUT * self.step / self.reach,
             _ if LENS.contains(&number) => tuning::USUAL_ERROR / self.reach.powi(2),
@@ -155,11 +158,12 @@ impl FamilyTests {
         &self,
         moments: &mut UnmodelledMatrix,
         known: &Fit,
-        (members, model): (&[usize], MotionModel),
+        members: &[usize],
         dependence: &UnmodelledVector,
     ) {
-        let usual = self.usual_size(members[0], model);
-        let members: Vec<usize> = members.iter().copied().filter(|i| self.information[(*i, *i)] > 0.0).collect();
+        let usual = self.usual_size(members[0]);
+        let is_told = |i: &usize| self.information[(*i, *i)] > 0.0 || EDGES.contains(i);
+        let members: Vec<usize> = members.iter().copied().filter(is_told).collect();
         let ratio = largest_of(dependence, &members);
         let n = known.numbers.len();
         let numbers: Vec<usize> = known.numbers.iter().chain(&members).copied().collect();

@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, SVector, Vector2};
 
 use crate::{
     tuning::family::{ROWS_OF_OBJECT, SIGNIFICANT},
-    update::{EDGES, GROWTH, LENS, PERSPECTIVE, READ_OUT, SHEAR},
+    update::{EDGES, FOURTH_OF_EDGES, GROWTH, LENS, PERSPECTIVE, READ_OUT, SHEAR},
 };
 
 /// What outlines do that their family of motions does not have.
@@ -28,33 +28,37 @@ pub enum WrongFamily {
 pub(super) type Members = &'static [usize];
 
 /// Motions that go together, by their numbers: a lens whose middle is not known stretches and skews too.
-pub(super) const GROUPS: [(WrongFamily, Members); 5] = [
+pub(super) const GROUPS: [(WrongFamily, Members); 6] = [
     (WrongFamily::Growth, &[GROWTH]),
     (WrongFamily::Shear, &SHEAR),
     (WrongFamily::Perspective, &PERSPECTIVE),
     (WrongFamily::RollingShutter, &[READ_OUT]),
     (WrongFamily::Lens, &OF_LENS),
+    (WrongFamily::Shape, &EDGES),
 ];
 
 /// What a lens does whose middle is elsewhere than where the object was first.
 pub(super) const OF_LENS: [usize; 5] = [SHEAR[0], SHEAR[1], LENS[0], LENS[1], LENS[2]];
 
-/// Groups beside a model that has growth and shear, whose numbers edges have.
+/// Groups beside a model that has growth and shear.
 const GROUPS_BESIDE_SHEAR: [(WrongFamily, Members); 3] =
-    [(WrongFamily::Shape, &EDGES), (WrongFamily::Perspective, &PERSPECTIVE), (WrongFamily::Lens, &LENS)];
+    [(WrongFamily::Shape, &ALL_OF_EDGES), (WrongFamily::Perspective, &PERSPECTIVE), (WrongFamily::Lens, &LENS)];
 
-/// Motions that pictures of a camera have now and then, a little: of pixels that are not square or a plane that is tilted, of perspective, of rows
-/// that are read one after the other, and of a lens.
-const OF_CAMERA: [Members; 4] = [&SHEAR, &PERSPECTIVE, &[READ_OUT], &[LENS[0]]];
+/// Both harmonics of edges that light displaces.
+const ALL_OF_EDGES: [usize; 4] = [EDGES[0], EDGES[1], FOURTH_OF_EDGES[0], FOURTH_OF_EDGES[1]];
 
-/// The same where the model has shear: edges that light displaces, perspective, a lens.
-const OF_CAMERA_BESIDE_SHEAR: [Members; 3] = [&[EDGES[0], EDGES[1]], &PERSPECTIVE, &[LENS[0]]];
+/// Motions that pictures have now and then, a little: of edges that light displaces, of pixels that are not square or a plane that is tilted, of
+/// perspective, of rows that are read one after the other, and of a lens. Edges are the first.
+const OF_PICTURES: [Members; 5] = [&EDGES, &SHEAR, &PERSPECTIVE, &[READ_OUT], &[LENS[0]]];
+
+/// The same where the model has shear.
+const OF_PICTURES_BESIDE_SHEAR: [Members; 3] = [&EDGES, &PERSPECTIVE, &[LENS[0]]];
 
 /// What may be left out by a model: motions that go together, and those that pictures have now and then.
 pub(super) fn left_out_by(model: MotionModel) -> (&'static [(WrongFamily, Members)], &'static [Members]) {
     match model {
-        MotionModel::Rigid | MotionModel::Similarity => (&GROUPS, &OF_CAMERA),
-        MotionModel::Affine => (&GROUPS_BESIDE_SHEAR, &OF_CAMERA_BESIDE_SHEAR),
+        MotionModel::Rigid | MotionModel::Similarity => (&GROUPS, &OF_PICTURES),
+        MotionModel::Affine => (&GROUPS_BESIDE_SHEAR, &OF_PICTURES_BESIDE_SHEAR),
         MotionModel::Projective => (&[], &[]),
     }
 }

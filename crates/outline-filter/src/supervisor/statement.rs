@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     belief::StateMatrix,
-    dynamics::{CentredDeviations, Dynamics, Purpose, Summary, WrongFamily, centred_velocity},
+    dynamics::{CentredDeviations, Dynamics, Purpose, Summary, UnmodelledEstimate, WrongFamily, centred_velocity},
     track::{Track, TurnOfPose, TurnTold, of_pose, of_pose_alone},
     tuning::statement as tuning,
 };
@@ -64,33 +64,38 @@ impl MotionFilter {
         let (unmodelled, moments) = track.unmodelled_motions();
         let mut all = random;
         all.covariance += moments;
-        let displacement = unmodelled.displacement * track.reference().radius;
         let ones = CentredDeviations::from_element(1.0);
-        if let Some(change) = self.possible_change(track, &own) {
-            all = all.widened(model, &centroid, &ones, [&none, &CentredDeviations::repeat(change)])?;
-        }
-        let edge_uncertainty = self.settings.edge_uncertainty;
-        let [pixel, of_side] = track.rounding_of_side();
-        if [displacement, edge_uncertainty, pixel].iter().any(|length| *length > 0.0) {
-            // Rounding to pixels is a saw tooth as the object moves, whose mean falls with the teeth that the frames show.
-            let span = track.span_of_motion(self.history.memory());
-            let rounding = if pixel > 0.0 { of_side / track.rounding_teeth_seen(span, pixel).max(1.0) } else { 0.0 };
-            let [pose, motion] = track.systematic(edge_uncertainty.hypot(rounding), span);
-            // What the motion model does not have need not be constant.
-            let [mut of_pose, mut of_motion] = track.systematic(displacement, track.span_of_motion(None));
-            if unmodelled.family.is_some() {
-                let [of_place, of_velocity] = track.shift_by_light(&unmodelled);
-                for i in centred_velocity(model) {
-                    of_pose[i] = of_pose[i].hypot(of_place);
-                    of_motion[i] = of_motion[i].hypot(of_velocity);
-                }
-            }
-            let [pose, motion] = [pose.zip_map(&of_pose, f64::hypot), motion.zip_map(&of_motion, f64::hypot)];
-            all = all.widened(model, &centroid, &ones, [&pose, &motion])?;
-        }
+        let [pose, motion] = self.systematic(track, &own, &unmodelled);
+        all = all.widened(model, &centroid, &ones, [&pose, &motion])?;
         // Edges may move points by as much, and that is in the deviations already.
-        let family = unmodelled.family.filter(|_| unmodelled.is_beyond_doubt && displacement > edge_uncertainty);
+        let displacement = unmodelled.displacement * track.reference().radius;
+        let is_beyond_doubt = unmodelled.is_beyond_doubt && displacement > self.settings.edge_uncertainty;
+        let family = unmodelled.family.filter(|_| is_beyond_doubt);
         Some(Statement { random, all, body_frame, family })
+    }
+
+    /// Deviations of pose and motion about the centroid, normalised, by what frames do not average out: edges that are displaced, rounding to pixels,
+    /// what the motion model leaves out, light, and a motion that changes within the one step that it is known from.
+    fn systematic(&self, track: &Track, own: &Summary, unmodelled: &UnmodelledEstimate) -> [CentredDeviations; 2] {
+        // Rounding to pixels is a saw tooth as the object moves, whose mean falls with the teeth that the frames show.
+        let [pixel, of_side] = track.rounding_of_side();
+        let span = track.span_of_motion(self.history.memory());
+        let rounding = if pixel > 0.0 { of_side / track.rounding_teeth_seen(span, pixel).max(1.0) } else { 0.0 };
+        let [mut of_pose, mut of_motion] = track.systematic(self.settings.edge_uncertainty.hypot(rounding), span);
+        // What the motion model does not have need not be constant.
+        let displacement = unmodelled.displacement * track.reference().radius;
+        let [pose, motion] = track.systematic(displacement, track.span_of_motion(None));
+        of_pose.zip_apply(&pose, |all, of_model| *all = all.hypot(of_model));
+        of_motion.zip_apply(&motion, |all, of_model| *all = all.hypot(of_model));
+        let [of_place, of_velocity] = track.shift_by_light(unmodelled);
+        for i in centred_velocity(self.settings.model) {
+            of_pose[i] = of_pose[i].hypot(of_place);
+            of_motion[i] = of_motion[i].hypot(of_velocity);
+        }
+        if let Some(change) = self.possible_change(track, own) {
+            of_motion.apply(|all| *all = all.hypot(change));
+        }
+        [of_pose, of_motion]
     }
 
     /// By how much a motion that is known from one step alone, a mean over it, may be off by now, as a deviation of every parameter about the

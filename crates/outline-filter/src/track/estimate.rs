@@ -18,7 +18,7 @@ use crate::{
         turn_hypotheses::DIFFERENT,
         update::SUDDEN,
     },
-    update::{SHEAR, hold, with_hold},
+    update::{EDGES, SHEAR, hold, with_hold},
 };
 
 /// What tells the turn of an object.
@@ -51,10 +51,11 @@ impl Track {
     }
 
     /// Deviations along each axis, normalised, of what a shift of the whole outline makes of its place since the first frame, and of the velocity of
-    /// its plane, if what stretches the outline is light from a side: that shifts it besides, by as much in the picture while the object turns.
+    /// its plane, as far as light from a side may displace edges: that shifts the outline besides, by as much in the picture while the object turns.
     pub(crate) fn shift_by_light(&self, unmodelled: &UnmodelledEstimate) -> [f64; 2] {
-        // Stretch and skew, or the edges that stand for them.
-        let second_harmonic = SHEAR.iter().map(|l| unmodelled.moments[(*l, *l)]).sum::<f64>().max(0.0).sqrt();
+        // Stretch and skew are hardly told from it where an outline is nearly round.
+        let moment = |numbers: [usize; 2]| numbers.into_iter().map(|l| unmodelled.moments[(l, l)]).sum::<f64>();
+        let second_harmonic = moment(EDGES).max(moment(SHEAR)).max(0.0).sqrt();
         let linear = self.belief.pose.fixed_view::<2, 2>(0, 0);
         let rates = self.model().generator(&self.belief.motion[..self.belief.parameter_count()]);
         // The mean square of `C s` over the directions of s is `|C|^2 s^2 / 2`, half of it along each axis.

@@ -108,10 +108,10 @@ mod tests {
         Point2::new(0.3 + p.x, -0.2 + 0.8 * p.y)
     }
 
-    /// Where a point of a frame is moved to by a unit of each motion that is left out, in the normalised coordinates of a track.
+    /// Where a point of a frame with its unit normal is moved to by a unit of each motion that is left out, in the normalised coordinates of a track.
     fn displaced(
         l: usize,
-        p: &Point2<f64>,
+        (p, normal): (&Point2<f64>, &Vector2<f64>),
         (centre, elapsed, velocity): (&Point2<f64>, f64, &Vector2<f64>),
     ) -> Vector2<f64> {
         let square = p.coords.norm_squared();
@@ -124,7 +124,9 @@ mod tests {
             5 => p.y * velocity,
             6 => square * p.coords,
             7 => 2.0 * p.x * p.coords + Vector2::new(square, 0.0),
-            _ => 2.0 * p.y * p.coords + Vector2::new(0.0, square),
+            8 => 2.0 * p.y * p.coords + Vector2::new(0.0, square),
+            9 => (normal.x * normal.x - normal.y * normal.y) * normal,
+            _ => 2.0 * normal.x * normal.y * normal,
         }
     }
 
@@ -144,9 +146,11 @@ mod tests {
             let centre = map_point(&(from * flow * to), &centroid);
             let generator = from * model.generator(&MOTION) * to;
             let outline = outline(600, |t| {
-                let p = map_point(&(from * flow), &body(t));
+                let at = |t: f64| map_point(&(from * flow), &body(t));
+                let (p, along) = (at(t), at(t + 1e-5) - at(t - 1e-5));
+                let normal = Vector2::new(along.y, -along.x).normalize();
                 let velocity = (generator * p.to_homogeneous()).xy();
-                let moved = p + size * displaced(l, &p, (&centre, elapsed, &velocity));
+                let moved = p + size * displaced(l, (&p, &normal), (&centre, elapsed, &velocity));
                 map_point(&to, &moved)
             });
             match &mut track {

@@ -215,9 +215,9 @@ pub(crate) mod family {
     /// What is added to the correlations of the motions in a single frame, so that combinations it hardly tells say nothing of the scatter: those of
     /// an eigenvalue of [`TOLD_APART`] count for a tenth, those of a hundredth for nine tenths.
     pub(crate) const HARDLY_TOLD: f64 = 1e-3;
-    /// Numbers that the assumption of a scatter by noise alone is worth: nine of each of eight frames, as many frames as innovations of unit variance
+    /// Numbers that the assumption of a scatter by noise alone is worth: eleven of each of eight frames, as many frames as innovations of unit variance
     /// are assumed by.
-    pub(crate) const PRIOR_SCATTER: f64 = 72.0;
+    pub(crate) const PRIOR_SCATTER: f64 = 88.0;
     /// Share of the frames that must tell a motion for those that do not show it to speak against it: where less than half of them do, most of a
     /// series is empty, and that it is told in one stretch says when it could be seen and not when it was there.
     pub(crate) const MOST_TELL: f64 = 0.5;

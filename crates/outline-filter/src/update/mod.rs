@@ -22,6 +22,6 @@ pub(crate) use pose_measurement::{PoseMeasurement, left_by_offsets};
 pub(crate) use sensitivity::Sensitivity;
 pub(crate) use solve::{Linearisations, Proposal};
 pub(crate) use unmodelled_displacement::{
-    EDGES, GROWTH, LENS, PERSPECTIVE, READ_OUT, SHEAR, UNMODELLED, UnmodelledMatrix, UnmodelledVector,
+    EDGES, FOURTH_OF_EDGES, GROWTH, LENS, PERSPECTIVE, READ_OUT, SHEAR, UNMODELLED, UnmodelledMatrix, UnmodelledVector,
 };
 pub(crate) use unmodelled_score::UnmodelledScore;

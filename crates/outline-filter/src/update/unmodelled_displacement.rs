@@ -8,7 +8,7 @@ use crate::{
 };
 
 /// Number of motions that may be left out.
-pub(crate) const UNMODELLED: usize = 9;
+pub(crate) const UNMODELLED: usize = 11;
 
 /// Their numbers: the object grows or shrinks about its centroid.
 pub(crate) const GROWTH: usize = 0;
@@ -20,9 +20,10 @@ pub(crate) const READ_OUT: usize = 5;
 /// A lens: outwards from the origin, and what that becomes where its middle is elsewhere.
 pub(crate) const LENS: [usize; 3] = [6, 7, 8];
 /// Edges that are displaced by the direction they face, as light and shadows displace them. Of a displacement `max(0, n . l)` the
-/// harmonics of even order are left beside a shift: here the second and the fourth of the angle of the normal n in the image. Where the model has
-/// growth and shear, edges have their numbers; elsewhere shear stands for them.
-pub(crate) const EDGES: [usize; 4] = [1, 2, 0, 5];
+/// harmonics of even order are left beside a shift: here the second of the angle of the normal n in the image.
+pub(crate) const EDGES: [usize; 2] = [9, 10];
+/// The fourth harmonic of that, asked for where the model has growth and shear, which what a rolling shutter does is as well: it has their numbers.
+pub(crate) const FOURTH_OF_EDGES: [usize; 2] = [GROWTH, READ_OUT];
 
 pub(crate) type UnmodelledVector = SVector<f64, UNMODELLED>;
 pub(crate) type UnmodelledMatrix = SMatrix<f64, UNMODELLED, UNMODELLED>;
@@ -34,8 +35,8 @@ enum LeftOut {
     All,
     /// All but growth.
     AllButGrowth,
-    /// It has growth and shear, and what a rolling shutter does, which is a shear: edges have their numbers.
-    Edges,
+    /// All but growth, shear, and what a rolling shutter does, which is a shear.
+    AllButLinear,
 }
 
 impl LeftOut {
@@ -44,7 +45,7 @@ impl LeftOut {
         match model {
             MotionModel::Rigid => Some(Self::All),
             MotionModel::Similarity => Some(Self::AllButGrowth),
-            MotionModel::Affine => Some(Self::Edges),
+            MotionModel::Affine => Some(Self::AllButLinear),
             MotionModel::Projective => None,
         }
     }
@@ -92,6 +93,7 @@ impl Instant {
         let g = &self.generator;
         let velocity = Vector2::new(g.m11 * p.x + g.m12 * p.y + g.m13, g.m21 * p.x + g.m22 * p.y + g.m23);
         let square = p.coords.norm_squared();
+        let [second, fourth] = displacements_of_edges(&n);
         let mut all = [
             self.elapsed * n.dot(&(p - self.centroid)),
             n.x * p.x - n.y * p.y,
@@ -102,14 +104,15 @@ impl Instant {
             square * along,
             2.0 * p.x * along + square * n.x,
             2.0 * p.y * along + square * n.y,
+            second[0],
+            second[1],
         ];
         match self.left_out {
             LeftOut::All => {}
             LeftOut::AllButGrowth => all[GROWTH] = 0.0,
-            LeftOut::Edges => {
-                for (number, displacement) in EDGES.into_iter().zip(displacements_of_edges(&n)) {
-                    all[number] = displacement;
-                }
+            LeftOut::AllButLinear => {
+                SHEAR.into_iter().for_each(|number| all[number] = 0.0);
+                FOURTH_OF_EDGES.into_iter().zip(fourth).for_each(|(number, displacement)| all[number] = displacement);
             }
         }
         (all, p, n)
@@ -118,9 +121,9 @@ impl Instant {
 
 /// Of unit displacements by the cosine and sine of twice and of four times the angle of the normal.
 #[inline(always)]
-fn displacements_of_edges(n: &Vector2<f64>) -> [f64; 4] {
+fn displacements_of_edges(n: &Vector2<f64>) -> [[f64; 2]; 2] {
     // A unit along the unit normal is as many along n as n is long.
     let size = n.norm();
     let [cos, sin] = [(n.x * n.x - n.y * n.y) / (size * size), 2.0 * n.x * n.y / (size * size)];
-    [cos, sin, cos * cos - sin * sin, 2.0 * cos * sin].map(|harmonic| size * harmonic)
+    [[cos, sin], [cos * cos - sin * sin, 2.0 * cos * sin]].map(|harmonic| harmonic.map(|h| size * h))
 }

@@ -62,6 +62,40 @@ fn the_first_poses_are_within_their_deviations_where_errors_are_smooth_along_the
     assert!(all > 300 && (0.9..0.99).contains(&share) && largest < 5.0, "{held} of {all}, {largest}");
 }
 
+/// Light that shifts the outline shows in other ways only once the body has turned in it. Before it was reckoned with beforehand, half of the recordings
+/// had a number more than four deviations off, by up to 17. Where there is none, deviations are hardly wider.
+#[test]
+fn the_motion_of_a_body_that_has_hardly_turned_in_light_is_within_its_deviations() {
+    let (mut errors, mut deviations) = (Vec::new(), [Vec::new(), Vec::new()]);
+    for (is_lit, seed) in [true, false].into_iter().flat_map(|is_lit| (0..12).map(move |seed| (is_lit, seed))) {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let light = Rotation2::new(random.random_range(0.0..TAU)) * Vector2::x() * if is_lit { 0.03 } else { 0.0 };
+        let mut run = filter(MotionModel::Rigid);
+        for frame in 0..10_u8 {
+            let turn = TURN * f64::from(frame);
+            let outline = bent_outline(turn, NOISE, &mut random, |_, normal| normal.dot(&light).max(0.0));
+            run.step(f64::from(frame) / FRAMES_PER_SECOND, &outline).expect("an outline");
+        }
+        let omega = run.estimate().expect("an estimate").parameters().next().expect("omega");
+        let found = run.velocity().expect("a velocity");
+        // Anticlockwise about the origin.
+        let velocity = Vector2::new(-found.point.y, found.point.x) * (TURN * FRAMES_PER_SECOND);
+        let (off, of_velocity) = (found.velocity - velocity, found.standard_deviations());
+        let of_omega = omega.standard_deviation.expect("a deviation");
+        if is_lit {
+            errors.push((omega.value.expect("a turn") + TURN * FRAMES_PER_SECOND) / of_omega);
+            errors.extend(off.component_div(&of_velocity).iter());
+        }
+        deviations[usize::from(is_lit)].push(of_velocity.norm());
+    }
+    let mean_square = errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64;
+    let largest = errors.iter().fold(0.0_f64, |most, error| most.max(error.abs()));
+    assert!((0.2..2.5).contains(&mean_square) && largest < 4.0, "{mean_square} {errors:?}");
+    let [unlit, lit] = deviations.map(|deviations| deviations.iter().sum::<f64>() / deviations.len() as f64);
+    println!("{mean_square} {largest} {unlit} {lit}");
+    assert!(unlit < 0.02 && unlit < 0.5 * lit, "{unlit} {lit}");
+}
+
 /// Light shifts the outline in the picture, wherever the body has turned to. Without the shift in the deviations the mean square was 57.
 #[test]
 fn the_place_of_a_body_that_turns_in_light_is_within_its_deviations() {
