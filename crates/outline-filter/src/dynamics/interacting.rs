@@ -173,7 +173,9 @@ impl<const N: usize> InteractingHypotheses<N> {
         self.reckon_with_change(seconds);
         let moved = CentredPose { pose: self.reference.pose, centroid: pose.centroid };
         let (model, reference) = (self.model, self.reference);
-        self.all().for_each(|hypothesis| hypothesis.move_centroid(model, &reference, &moved));
+        if moved.centroid != reference.centroid {
+            self.all().for_each(|hypothesis| hypothesis.move_centroid(model, &reference, &moved));
+        }
         self.reference = moved;
         let arrivals = self.leads.then_some(&mut self.arrivals);
         mix(&mut self.hypotheses, &mut self.weights, self.model, (&self.pose_variance, seconds), arrivals);
