@@ -164,7 +164,7 @@ pub(super) fn of_both(change: &SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>, k: 
     both
 }
 
-/// `F P F'` of a symmetric P over the first `n` entries, of which a state has two or three for each parameter. F and P have none beyond them.
+/// `F P F'` of a symmetric P over the first `n` entries, one, two or three for each parameter. F and P have none beyond them.
 pub(super) fn carried<const N: usize>(f: &SMatrix<f64, N, N>, p: &SMatrix<f64, N, N>, n: usize) -> SMatrix<f64, N, N> {
     let mut carried = *p;
     carry(f, &mut carried, n);
@@ -176,6 +176,8 @@ pub(super) fn carry<const N: usize>(f: &SMatrix<f64, N, N>, p: &mut SMatrix<f64,
     vectorised(
         #[inline(always)]
         || match n {
+            3 => carry_sized::<N, 3>(f, p),
+            4 => carry_sized::<N, 4>(f, p),
             6 => carry_sized::<N, 6>(f, p),
             8 => carry_sized::<N, 8>(f, p),
             9 => carry_sized::<N, 9>(f, p),
@@ -284,7 +286,7 @@ mod tests {
         ) {
             let f = SMatrix::<f64, 9, 9>::from_fn(|i, j| f[9 * i + j].unwrap_or(0.0));
             let p = SMatrix::<f64, 9, 9>::from_fn(|i, j| p[9 * i + j] + p[9 * j + i]);
-            for n in [6, 8, 9] {
+            for n in [3, 4, 6, 8, 9] {
                 let within = |m: &SMatrix<f64, 9, 9>| SMatrix::<f64, 9, 9>::from_fn(|i, j| if i < n && j < n { m[(i, j)] } else { 0.0 });
                 let expected = within(&f) * within(&p) * within(&f).transpose();
                 prop_assert!((carried(&f, &p, n) - expected).amax() < 1e-12);

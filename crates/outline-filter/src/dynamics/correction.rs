@@ -3,6 +3,8 @@
 //! With the root L of the information of the frame, `W = L L'`, and the covariance P of the predicted pose, the weight of the innovation is
 //! `(W^-1 + P)^-1 = (I + W P)^-1 W = T T'`, where `T = L C^-T` and `C C' = I + L' P L`. That is never singular, also where W is, and has the
 //! determinant of `I + W P`. The covariance loses `H H'`, where H are its columns of the pose times T: it stays symmetric bit by bit.
+use nalgebra::{Const, DimMin};
+
 use super::{
     centred::{CentredDeviations, CentredMatrix, CentredVector, LARGEST},
     hypothesis::{CentredMeasurement, Hypothesis, Innovation},
@@ -47,11 +49,25 @@ pub(super) fn less_known(information: CentredMatrix, off: &CentredDeviations) ->
 
 /// Solution of `W x = b` for a matrix that may be singular: none along what it says nothing of.
 pub(super) fn solved(information: &CentredMatrix, b: &CentredVector, k: usize) -> Option<CentredVector> {
-    let largest = (0..k).map(|j| information[(j, j)]).fold(0.0, f64::max);
-    let jitter =
-        |j: usize| if j < k { tuning::SINGULAR * (information[(j, j)] + tuning::SINGULAR * largest) } else { 1.0 };
-    let regular = information + CentredMatrix::from_diagonal(&CentredVector::from_fn(|j, _| jitter(j)));
-    regular.lu().solve(b)
+    match k {
+        3 => solved_sized::<3>(information, b),
+        4 => solved_sized::<4>(information, b),
+        6 => solved_sized::<6>(information, b),
+        _ => solved_sized::<LARGEST>(information, b),
+    }
+}
+
+fn solved_sized<const K: usize>(information: &CentredMatrix, b: &CentredVector) -> Option<CentredVector>
+where
+    Const<K>: DimMin<Const<K>, Output = Const<K>>,
+{
+    let mut regular = information.fixed_view::<K, K>(0, 0).into_owned();
+    let largest = (0..K).map(|j| regular[(j, j)]).fold(0.0, f64::max);
+    for j in 0..K {
+        regular[(j, j)] += tuning::SINGULAR * (regular[(j, j)] + tuning::SINGULAR * largest);
+    }
+    let solution = regular.lu().solve(&b.fixed_rows::<K>(0))?;
+    Some(CentredVector::from_fn(|i, _| if i < K { solution[i] } else { 0.0 }))
 }
 
 /// What a correction is made of.

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Point2, SMatrix, SVector};
 
 use super::{
     arrival::Arrival,
-    centred::{CentredDeviations, CentredMatrix, CentredPose, CentredVector, LARGEST, Summary},
+    centred::{CentredDeviations, CentredPose, CentredVector, LARGEST, Summary, carried},
     common_error::CommonError,
     correction::{less_known, root_of, solved},
     course::Course,
@@ -225,8 +225,7 @@ impl<const N: usize> InteractingHypotheses<N> {
     pub(crate) fn update(&mut self, measured: &PoseMeasurement, off: &CentredDeviations) {
         let k = self.model.parameter_count();
         let Some(to) = self.reference.about_origin(self.model) else { return };
-        let information = to.transpose() * measured.information * to;
-        let information = CentredMatrix::from_fn(|i, j| if i < k && j < k { information[(i, j)] } else { 0.0 });
+        let information = carried(&to.transpose(), &measured.information, k);
         let pulled = measured.pulled + measured.information * self.common.shift_in(&self.reference.pose);
         let pulled = to.transpose() * pulled;
         let pulled = CentredVector::from_fn(|i, _| if i < k { pulled[i] } else { 0.0 });
