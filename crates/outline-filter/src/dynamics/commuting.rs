@@ -5,7 +5,7 @@ use freeform_riccati::MotionModel;
 use nalgebra::{Matrix2, Vector2};
 
 use super::{
-    centred::{LARGEST, carried, parts},
+    centred::{LARGEST, parts},
     course::Course,
     hypothesis::Hypothesis,
     step::{Step, turned_along},
@@ -46,8 +46,7 @@ impl<const N: usize> Hypothesis<N> {
                 _ if changes => (along * v + pushed * turning, turn * v + along * turning),
                 _ => (along * v, turn * v),
             };
-            let transition = self.transition(step, (&turn, &along, &pushed), (&v, &later));
-            self.covariance = carried(&transition, &self.covariance, self.size());
+            self.carry_turned([&turn, &along, &pushed], [&v, &later], dt);
             self.set_velocity(&turn, &shift, &later);
             for (j, rate) in rates.iter().enumerate().take(k - 2) {
                 self.mean[j] += dt * rate;

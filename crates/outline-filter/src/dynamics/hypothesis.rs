@@ -9,7 +9,6 @@ use super::{
     course::Course,
     step::{Step, pushed_along, turned_along},
     turned_chains::carry_turned_chains,
-    turned_motion::TurnedMotion,
 };
 
 /// State of one hypothesis for a model of k parameters, N = 3 k. Entry `j` is the error of the reference pose, `k + j` the motion, `2 k + j`
@@ -178,9 +177,8 @@ impl<const N: usize> Hypothesis<N> {
         let centre = step.centre + Vector2::new(error[k - 2], error[k - 1]) + shift;
         if self.course.accelerates() && model == MotionModel::Affine {
             carry_turned_chains(&mut self.covariance.data.0, &turn, dt);
-        } else if self.course.turns() && model == MotionModel::Affine {
-            let motion = TurnedMotion::new([&turn, &along, &pushed], [&v, &later], dt);
-            motion.carry(&mut self.covariance.data.0, self.course.has_accelerations());
+        } else if model == MotionModel::Affine {
+            self.carry_turned([&turn, &along, &pushed], [&v, &later], dt);
         } else {
             let (transition, size) = (self.transition(step, (&turn, &along, &pushed), (&v, &later)), self.size());
             carry(&transition, &mut self.covariance, size);
