@@ -85,7 +85,7 @@ pub(super) fn pushed_along(rates: &Matrix2<f64>, seconds: f64) -> Matrix2<f64> {
     for n in 3..=tuning::MOST_TERMS {
         term = rates * term * (seconds / f64::from(n));
         sum += term;
-        if term.amax() <= f64::EPSILON * sum.amax() {
+        if term.norm_squared() <= f64::EPSILON * f64::EPSILON * sum.norm_squared() {
             break;
         }
     }
