@@ -71,64 +71,59 @@ where
 }
 
 /// What a correction is made of.
-struct Weight<const K: usize> {
+struct Weight<const K: usize, const N: usize> {
     /// T, by columns.
     root: [[f64; K]; K],
+    /// H, by columns.
+    gain: [[f64; N]; K],
     /// Of `I + W P`.
     determinant: f64,
 }
 
-impl<const K: usize> Weight<K> {
-    /// By the root of the information and the covariance of the pose, both by columns.
+impl<const K: usize, const N: usize> Weight<K, N> {
+    /// By the root of the information and the covariance of a hypothesis, both by columns.
+    ///
+    /// `T C' = L` and `H C' = P L` are solved column by column. The entries of C come with them: to the left of its diagonal it is `L' H`, H in the
+    /// rows of the pose.
     #[inline(always)]
-    fn of(root: &[[f64; K]; K], pose: &[[f64; K]; K]) -> Self {
-        // Long columns are worked on as whole vectors, with zeros and with what is not needed of them.
-        let first = |j: usize| if K < 6 { j } else { 0 };
-        let mut rows = [[0.0; K]; K];
-        for i in 0..K {
-            for j in 0..K {
-                rows[i][j] = root[j][i];
-            }
-        }
-        // P L and I + L' P L by columns.
-        let mut sum = [[0.0; K]; K];
-        for j in 0..K {
-            let (mut column, mut of_sum) = ([0.0; K], [0.0; K]);
-            for l in first(j)..K {
-                for i in 0..K {
-                    column[i] += pose[l][i] * root[j][l];
+    fn of(root: &[[f64; K]; K], covariance: &[[f64; N]; N]) -> Self {
+        let (mut roots, mut gain, mut determinant) = (*root, [[0.0; N]; K], 1.0);
+        for m in 0..K {
+            // None above the diagonal.
+            let own = root[m];
+            let (mut of_root, mut of_gain) = (own, [0.0; N]);
+            for l in m..K {
+                for i in 0..N {
+                    of_gain[i] += covariance[l][i] * own[l];
                 }
             }
-            of_sum[j] = 1.0;
+            for j in 0..m {
+                let before = gain[j];
+                let mut factor = 0.0;
+                for l in 0..K {
+                    factor += own[l] * before[l];
+                }
+                for i in 0..N {
+                    of_gain[i] -= factor * before[i];
+                }
+                for i in 0..K {
+                    of_root[i] -= factor * roots[j][i];
+                }
+            }
+            let mut squared = 1.0;
             for l in 0..K {
-                for i in first(j)..K {
-                    of_sum[i] += rows[l][i] * column[l];
-                }
+                squared += own[l] * of_gain[l];
             }
-            sum[j] = of_sum;
-        }
-        // The columns of its root C from the diagonal on, and with them the columns of T, which L is.
-        let (mut columns, mut determinant) = (*root, 1.0);
-        for j in 0..K {
-            determinant *= sum[j][j];
-            let inverse = 1.0 / sum[j][j].sqrt();
-            let (mut pivot, mut column) = (sum[j], columns[j]);
+            determinant *= squared;
+            let inverse = 1.0 / squared.sqrt();
             for i in 0..K {
-                pivot[i] *= inverse;
-                column[i] *= inverse;
+                roots[m][i] = of_root[i] * inverse;
             }
-            columns[j] = column;
-            for l in j + 1..K {
-                let factor = pivot[l];
-                for i in first(l)..K {
-                    sum[l][i] -= factor * pivot[i];
-                }
-                for i in 0..K {
-                    columns[l][i] -= factor * column[i];
-                }
+            for i in 0..N {
+                gain[m][i] = of_gain[i] * inverse;
             }
         }
-        Self { root: columns, determinant }
+        Self { root: roots, gain, determinant }
     }
 }
 
@@ -141,15 +136,14 @@ impl<const N: usize> Hypothesis<N> {
             std::array::from_fn(|j| std::array::from_fn(|i| measurement.root[(i, j)] * by_shaking));
         let off: [f64; K] = std::array::from_fn(|i| measurement.deviation[i] - self.mean[i]);
         let (covariance, mean) = (&mut self.covariance.data.0, &mut self.mean.data.0[0]);
-        let (weight, pulled, squared) = vectorised(
+        let (root, determinant, pulled, squared) = vectorised(
             #[inline(always)]
             || {
-                let pose: [[f64; K]; K] = std::array::from_fn(|j| std::array::from_fn(|i| covariance[j][i]));
-                let weight = Weight::of(&root, &pose);
+                let weight = Weight::<K, N>::of(&root, covariance);
                 let along: [f64; K] = std::array::from_fn(|l| (0..K).map(|i| weight.root[l][i] * off[i]).sum());
                 let squared: f64 = along.iter().map(|along| along * along).sum();
                 if weight.determinant > 0.0 && squared.is_finite() {
-                    correct(&weight, &along, (mean, covariance));
+                    correct(&weight.gain, &along, (mean, covariance));
                 }
                 let mut pulled = [0.0; K];
                 for (column, along) in weight.root.iter().zip(&along) {
@@ -157,41 +151,31 @@ impl<const N: usize> Hypothesis<N> {
                         *pulled += entry * along;
                     }
                 }
-                (weight, pulled, squared)
+                (weight.root, weight.determinant, pulled, squared)
             },
         );
-        if !(weight.determinant > 0.0 && squared.is_finite()) {
+        if !(determinant > 0.0 && squared.is_finite()) {
             return None;
         }
         // The score, S^-1 off with S the covariance of the innovation, has the covariance S^-1: also where S is not finite.
         let mut standardised = CentredVector::zeros();
         for j in 0..K {
-            let own: f64 = weight.root.iter().map(|column| column[j] * column[j]).sum();
+            let own: f64 = root.iter().map(|column| column[j] * column[j]).sum();
             standardised[j] = if own > 0.0 { pulled[j] / own.sqrt() } else { 0.0 };
         }
         // The density of the innovation, without the factor that all hypotheses share.
-        let log_likelihood = -0.5 * (weight.determinant.ln() + K as f64 * shaking.ln() + squared);
+        let log_likelihood = -0.5 * (determinant.ln() + K as f64 * shaking.ln() + squared);
         Some(Innovation { log_likelihood, standardised })
     }
 }
 
-/// Corrects mean and covariance, given by its columns: by H times `along`, T' times the innovation, and by H H'.
+/// Corrects mean and covariance, given by its columns: by H, the `gain`, times `along`, T' times the innovation, and by H H'.
 #[inline(always)]
 fn correct<const K: usize, const N: usize>(
-    weight: &Weight<K>,
+    gain: &[[f64; N]; K],
     along: &[f64; K],
     (mean, covariance): (&mut [f64; N], &mut [[f64; N]; N]),
 ) {
-    let mut gain = [[0.0; N]; K];
-    for (gain, root) in gain.iter_mut().zip(&weight.root) {
-        let mut column = [0.0; N];
-        for m in 0..K {
-            for i in 0..N {
-                column[i] += covariance[m][i] * root[m];
-            }
-        }
-        *gain = column;
-    }
     let mut moved = *mean;
     for l in 0..K {
         for i in 0..N {
