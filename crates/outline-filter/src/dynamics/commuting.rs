@@ -1,5 +1,5 @@
 //! Hypotheses of models whose turns and growth commute, moved on in closed form: their logarithms add up.
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use freeform_riccati::MotionModel;
 use nalgebra::{Matrix2, Vector2};
@@ -59,9 +59,11 @@ impl<const N: usize> Hypothesis<N> {
         }
         self.mean[k - 2] += step.centre.x;
         self.mean[k - 1] += step.centre.y;
-        // Turns that differ by a round are the same.
+        // Turns that differ by a round are the same; most are small, and stay.
         let turn = &mut self.mean[k - 3];
-        *turn -= TAU * (*turn / TAU).round();
+        if turn.abs() >= PI {
+            *turn -= TAU * (*turn / TAU).round();
+        }
     }
 
     /// Adds the way that the centroid has gone in a step, and sets the velocity after it.

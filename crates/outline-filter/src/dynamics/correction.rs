@@ -164,7 +164,8 @@ impl<const N: usize> Hypothesis<N> {
             standardised[j] = if own > 0.0 { pulled[j] / own.sqrt() } else { 0.0 };
         }
         // The density of the innovation, without the factor that all hypotheses share.
-        let log_likelihood = -0.5 * (determinant.ln() + K as f64 * shaking.ln() + squared);
+        let of_shaking = if shaking > 1.0 { K as f64 * shaking.ln() } else { 0.0 };
+        let log_likelihood = -0.5 * (determinant.ln() + of_shaking + squared);
         Some(Innovation { log_likelihood, standardised })
     }
 }
