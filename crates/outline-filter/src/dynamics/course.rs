@@ -142,6 +142,12 @@ impl Course {
         }
     }
 
+    /// Whether it takes the step that has led to its beginning to have been straight. Those whose accelerations may be anything begin with an arc or a chord
+    /// alike.
+    pub(super) fn has_run_straight(self) -> bool {
+        matches!(self, Self::ConstantVelocity { .. } | Self::SteadyChange { turns: false })
+    }
+
     /// Level at which its accelerations change at random, if they do.
     pub(super) fn level(self) -> Option<f64> {
         match self {

@@ -42,30 +42,6 @@ impl<const N: usize> Hypothesis<N> {
     /// Number of parameters.
     pub(super) const K: usize = N / 3;
 
-    /// Begins with mean and covariance of pose and motion, the motion being that of the step of so many seconds before.
-    pub(super) fn begin(
-        (course, model): (Course, MotionModel),
-        (mean, covariance): (SVector<f64, N>, SMatrix<f64, N, N>),
-        (pose_variance, seconds): (&CentredVector, f64),
-    ) -> Self {
-        let mut hypothesis = Self { course, mean, covariance };
-        if course.has_more_than_motion() {
-            hypothesis.add_unknown(model, (pose_variance, seconds), 1.0);
-        }
-        if course.has_accelerations() {
-            let k = Self::K;
-            // The motion known so far is the mean over the step: half of it ago.
-            for j in 0..k {
-                let (u, a) = (k + j, 2 * k + j);
-                let prior = hypothesis.covariance[(a, a)];
-                hypothesis.covariance[(u, u)] += 0.25 * seconds * seconds * prior;
-                hypothesis.covariance[(u, a)] = 0.5 * seconds * prior;
-                hypothesis.covariance[(a, u)] = 0.5 * seconds * prior;
-            }
-        }
-        hypothesis
-    }
-
     /// Number of entries in use.
     pub(super) fn size(&self) -> usize {
         if self.course.has_more_than_motion() { N } else { 2 * Self::K }
@@ -90,25 +66,6 @@ impl<const N: usize> Hypothesis<N> {
         let half_way =
             CentredVector::from_fn(|j, _| if j < k { self.mean[k + j] + 0.5 * dt * self.mean[2 * k + j] } else { 0.0 });
         pushed_along(&parts(&centred_generator(step.model, &half_way.as_slice()[..k])).0, dt)
-    }
-
-    /// Takes next to nothing to be known of the entries behind the motion, which depend on no others then; `share` of the variance is added.
-    pub(super) fn add_unknown(
-        &mut self,
-        model: MotionModel,
-        (pose_variance, seconds): (&CentredVector, f64),
-        share: f64,
-    ) {
-        let k = Self::K;
-        if let Course::ConstantVelocity { of } = self.course {
-            let rates = self.rates(model) * of.off_centroid();
-            let added = share * rates * rates.transpose();
-            let mut block = self.covariance.fixed_view_mut::<2, 2>(3 * k - 2, 3 * k - 2);
-            block += added;
-        } else {
-            let prior = self.course.acceleration_prior(pose_variance, k, seconds);
-            (2 * k..3 * k).for_each(|i| self.covariance[(i, i)] += share * prior[i - 2 * k]);
-        }
     }
 
     /// Moves on by a step; whether the numbers allow it.

@@ -9,7 +9,7 @@ use super::{
     centred::{CentredDeviations, CentredPose, CentredVector, LARGEST, Summary, carried},
     common_error::CommonError,
     correction::{less_known, root_of, solved},
-    course::Course,
+    course::{Course, PointOfBody},
     hypothesis::{CentredMeasurement, Hypothesis},
     innovations::InnovationSeries,
     mixing::mix,
@@ -250,7 +250,10 @@ impl<const N: usize> InteractingHypotheses<N> {
             (logarithms[number], standardised[number]) = (logarithm, score);
         }
         if let Some(change) = &mut self.steady_change {
-            change.update(&measurement);
+            let is_velocity =
+                |h: &Hypothesis<N>| h.course == Course::ConstantVelocity { of: PointOfBody::NearCentroid };
+            let velocity = self.hypotheses.iter().position(is_velocity);
+            change.update(&measurement, velocity.map(|number| logarithms[number]));
         }
         let largest = logarithms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         if !largest.is_finite() {

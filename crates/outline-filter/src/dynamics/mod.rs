@@ -5,6 +5,7 @@
 //! outline of their own.
 mod accelerations;
 mod arrival;
+mod beginning;
 mod centred;
 mod combination;
 mod common_error;

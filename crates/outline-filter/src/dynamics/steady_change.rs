@@ -1,4 +1,6 @@
 //! A motion that changes at a steady rate from the beginning: how probable that is, and how far off a constant one is then.
+use std::ops::Range;
+
 use freeform_riccati::MotionModel;
 use nalgebra::{SMatrix, SVector};
 
@@ -19,6 +21,9 @@ pub(super) struct SteadyChange<const N: usize> {
     hypotheses: Vec<Hypothesis<N>>,
     /// Deviations of a pose over the square of a step: the unit of rates of change.
     units: CentredVector,
+    /// Logarithm of how many times as probable frames were where next to nothing is known of how the velocity of the centroid changes as where that of a
+    /// point near the centroid is constant.
+    over_velocity: f64,
     frames: usize,
 }
 
@@ -43,7 +48,8 @@ impl<const N: usize> SteadyChange<N> {
         let hypotheses = [true, false].into_iter().map(|turns| {
             Hypothesis::begin((Course::SteadyChange { turns }, model), (mean, covariance), (pose_variance, seconds))
         });
-        Self { hypotheses: hypotheses.collect(), units: pose_variance.map(f64::sqrt) / (seconds * seconds), frames: 0 }
+        let units = pose_variance.map(f64::sqrt) / (seconds * seconds);
+        Self { hypotheses: hypotheses.collect(), units, over_velocity: 0.0, frames: 0 }
     }
 
     /// Whether it has been followed for long: smaller changes than those that are reckoned with would be seen by then.
@@ -56,10 +62,14 @@ impl<const N: usize> SteadyChange<N> {
         if self.is_over() { &mut [] } else { &mut self.hypotheses }
     }
 
-    /// Takes a frame.
-    pub(super) fn update(&mut self, measurement: &CentredMeasurement) {
+    /// Takes a frame; `velocity` is the logarithm of its likelihood where the velocity of a point near the centroid is constant.
+    pub(super) fn update(&mut self, measurement: &CentredMeasurement, velocity: Option<f64>) {
+        let mut changes = None;
         for hypothesis in self.hypotheses() {
-            hypothesis.update(measurement);
+            changes = hypothesis.update(measurement);
+        }
+        if let Some((changes, velocity)) = changes.zip(velocity.filter(|logarithm| logarithm.is_finite())) {
+            self.over_velocity += changes.log_likelihood - velocity;
         }
         self.frames = (self.frames + 1).min(tuning::FRAMES);
     }
@@ -72,6 +82,7 @@ impl<const N: usize> SteadyChange<N> {
         courses.eq([true, false].map(|turns| Course::SteadyChange { turns }))
             && self.hypotheses.iter().all(|h| is_finite(h.mean.as_slice()) && is_finite(h.covariance.as_slice()))
             && self.units.iter().all(|unit| unit.is_finite() && *unit > 0.0)
+            && self.over_velocity.is_finite()
             && self.frames <= tuning::FRAMES
     }
 
@@ -99,7 +110,8 @@ impl<const N: usize> SteadyChange<N> {
         let found = CentredVector::from_fn(|i, _| if i < k { mean[2 * k + i] / unit[i] } else { 0.0 });
         let widened =
             CentredMatrix::from_fn(|i, j| information[(i, j)] / (widened_later[i] * widened_later[j] * shaking));
-        let changes = Changes { information: widened, score: widened * found }.weighed(k)?;
+        let against = if turns { 0.0 } else { self.against(&Changes { information, score: information * found }, k)? };
+        let changes = Changes { information: widened, score: widened * found }.weighed(k, against / shaking)?;
         let of_state = SMatrix::<f64, N, LARGEST>::from_fn(|i, j| match i < 2 * k && j < k {
             true => covariance[(i, 2 * k + j)] / unit[j],
             false => 0.0,
@@ -112,6 +124,13 @@ impl<const N: usize> SteadyChange<N> {
         };
         let Weighed { probability, apart, beside } = changes;
         Some(PossibleChange { probability, apart: carried(apart), beside: carried(beside) })
+    }
+
+    /// Logarithm, at most 0, of how many times as probable frames are by a constant velocity of the centroid as by that of a point near it, which explains
+    /// what looks like a change of the former. `changes` are those of the velocity of the centroid.
+    fn against(&self, changes: &Changes, k: usize) -> Option<f64> {
+        let any = changes.some_of_size(&(0..k), tuning::ANY)?;
+        Some((self.over_velocity - any.logarithm).min(0.0))
     }
 }
 
@@ -128,29 +147,47 @@ struct Weighed {
     beside: CentredMatrix,
 }
 
+/// Rates of change of some size, in their units.
+struct OfSize {
+    /// Logarithm of their Bayes factor against none.
+    logarithm: f64,
+    sizes: CentredVector,
+    /// Share of their variance that is left.
+    left: CentredMatrix,
+}
+
 impl Changes {
-    /// Weighs changes of k parameters.
-    fn weighed(&self, k: usize) -> Option<Weighed> {
+    /// Changes of some parameters, of a size beforehand.
+    fn some_of_size(&self, members: &Range<usize>, size: f64) -> Option<OfSize> {
+        let variance = size * size;
+        let among = |i: usize, j: usize| members.contains(&i) && members.contains(&j);
+        let of_prior = CentredMatrix::from_fn(|i, j| {
+            f64::from(u8::from(i == j)) + if among(i, j) { variance * self.information[(i, j)] } else { 0.0 }
+        });
+        let factor = of_prior.cholesky()?;
+        let score = CentredVector::from_fn(|i, _| if members.contains(&i) { self.score[i] } else { 0.0 });
+        let sizes = factor.solve(&score) * variance;
+        let logarithm = 0.5 * (score.dot(&sizes) - factor.ln_determinant());
+        Some(OfSize { logarithm, sizes, left: factor.inverse() })
+    }
+
+    /// Weighs changes of k parameters, with a logarithm that comes to those of all Bayes factors.
+    fn weighed(&self, k: usize, against: f64) -> Option<Weighed> {
         let some = [0..k - 2, k - 2..k, 0..k];
         let each = tuning::PRIOR / (some.len() * tuning::SIZES.len()) as f64;
         let mut all = 1.0 - tuning::PRIOR;
         let (mut probability, mut apart, mut beside) = (0.0, CentredMatrix::zeros(), CentredMatrix::zeros());
         for (members, size) in some.iter().flat_map(|members| tuning::SIZES.map(|size| (members, size))) {
-            let variance = size * size;
-            let among = |i: usize, j: usize| members.contains(&i) && members.contains(&j);
-            let of_prior = CentredMatrix::from_fn(|i, j| {
-                f64::from(u8::from(i == j)) + if among(i, j) { variance * self.information[(i, j)] } else { 0.0 }
-            });
-            let factor = of_prior.cholesky()?;
-            let score = CentredVector::from_fn(|i, _| if members.contains(&i) { self.score[i] } else { 0.0 });
-            let (sizes, left) = (factor.solve(&score) * variance, factor.inverse());
-            let logarithm = 0.5 * (score.dot(&sizes) - factor.ln_determinant());
-            let weight = each * logarithm.min(tuning::LARGEST_LOGARITHM).exp();
+            let OfSize { logarithm, sizes, left } = self.some_of_size(members, size)?;
+            let weight = each * (logarithm + against).min(tuning::LARGEST_LOGARITHM).exp();
             all += weight;
             // Of a size that frames do not tell from none, a change is no other motion.
             probability += weight * members.clone().map(|i| 1.0 - left[(i, i)]).fold(0.0, f64::max);
             apart += sizes * sizes.transpose() * weight;
-            beside += CentredMatrix::from_fn(|i, j| if among(i, j) { weight * variance * left[(i, j)] } else { 0.0 });
+            let is_among = |i: usize| members.contains(&i);
+            beside += CentredMatrix::from_fn(|i, j| {
+                if is_among(i) && is_among(j) { weight * size * size * left[(i, j)] } else { 0.0 }
+            });
         }
         Some(Weighed { probability: probability / all, apart: apart / all, beside: beside / all })
     }
@@ -167,7 +204,7 @@ mod tests {
     fn found_at(deviations: f64) -> Weighed {
         let information = CentredMatrix::from_diagonal(&CentredVector::from_fn(|i, _| if i < 3 { 4.0 } else { 1.0 }));
         let score = CentredVector::from_fn(|i, _| if i == 0 { 2.0 * deviations } else { 0.0 });
-        Changes { information, score }.weighed(3).expect("regular")
+        Changes { information, score }.weighed(3, 0.0).expect("regular")
     }
 
     #[test]
