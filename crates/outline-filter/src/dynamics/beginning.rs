@@ -1,13 +1,12 @@
 //! What a hypothesis begins with.
 use freeform_riccati::MotionModel;
-use nalgebra::{Matrix2, SMatrix, SVector};
+use nalgebra::{SMatrix, SVector};
 
 use super::{
     centred::{CentredVector, carry, centred_generator, centred_order, parts},
     course::Course,
     hypothesis::Hypothesis,
 };
-use crate::tuning::dynamics as tuning;
 
 impl<const N: usize> Hypothesis<N> {
     /// Begins with mean and covariance of pose and motion, the motion being that of the step of so many seconds before.
@@ -41,8 +40,11 @@ impl<const N: usize> Hypothesis<N> {
     /// turns by some tenths of a rad from frame to frame, the velocity at the end of an arc is many deviations off that along its chord.
     fn take_way_as_straight(&mut self, model: MotionModel, seconds: f64) {
         let k = Self::K;
-        let (rates, velocity) = parts(&centred_generator(model, &self.mean.as_slice()[k..2 * k]));
-        let back = turned_back(&rates, seconds);
+        let motion = &self.mean.as_slice()[k..2 * k];
+        let velocity = parts(&centred_generator(model, motion)).1;
+        // In centred order the rates come first, perspective or not.
+        let (of_rates, count) = if model == MotionModel::Projective { (MotionModel::Affine, 6) } else { (model, k) };
+        let back = of_rates.linear_flow_with_integral(&motion[..count], -seconds).1 / -seconds;
         let chord = back * velocity;
         let mut change = SMatrix::<f64, N, N>::identity();
         change.fixed_view_mut::<2, 2>(2 * k - 2, 2 * k - 2).copy_from(&back);
@@ -72,20 +74,6 @@ impl<const N: usize> Hypothesis<N> {
             (2 * k..3 * k).for_each(|i| self.covariance[(i, i)] += share * prior[i - 2 * k]);
         }
     }
-}
-
-/// The mean over a step of the turn by rates A back from its end, `sum of (-A dt)^n / (n+1)!`: the velocity at the end of an arc to that along its chord.
-fn turned_back(rates: &Matrix2<f64>, seconds: f64) -> Matrix2<f64> {
-    let mut term = Matrix2::identity();
-    let mut sum = term;
-    for n in 2..=tuning::MOST_TERMS {
-        term = rates * term * (-seconds / f64::from(n));
-        sum += term;
-        if term.amax() <= f64::EPSILON * sum.amax() {
-            break;
-        }
-    }
-    sum
 }
 
 #[cfg(test)]

@@ -142,8 +142,8 @@ impl Course {
         }
     }
 
-    /// Whether it takes the step that has led to its beginning to have been straight. Those whose accelerations may be anything begin with an arc or a chord
-    /// alike.
+    /// Whether it takes the step that has led to its beginning to have been straight. Those that accelerate begin with the arc: begun with the chord they
+    /// explain the first frames of a straight flight as well as a constant velocity does, whose errors were a tenth larger then.
     pub(super) fn has_run_straight(self) -> bool {
         matches!(self, Self::ConstantVelocity { .. } | Self::SteadyChange { turns: false })
     }

@@ -21,8 +21,8 @@ pub(super) struct SteadyChange<const N: usize> {
     hypotheses: Vec<Hypothesis<N>>,
     /// Deviations of a pose over the square of a step: the unit of rates of change.
     units: CentredVector,
-    /// Logarithm of how many times as probable frames were where next to nothing is known of how the velocity of the centroid changes as where that of a
-    /// point near the centroid is constant.
+    /// `ln(L_alpha / L_d)` of (82a) in docs/motion-filter.md: the likelihood of the frames since it began if next to nothing is known of the changes,
+    /// over that of a constant velocity of a point near the centroid.
     over_velocity: f64,
     frames: usize,
 }
@@ -64,13 +64,14 @@ impl<const N: usize> SteadyChange<N> {
 
     /// Takes a frame; `velocity` is the logarithm of its likelihood where the velocity of a point near the centroid is constant.
     pub(super) fn update(&mut self, measurement: &CentredMeasurement, velocity: Option<f64>) {
-        let mut changes = None;
+        let mut gained = 0.0;
         for hypothesis in self.hypotheses() {
-            changes = hypothesis.update(measurement);
+            let innovation = hypothesis.update(measurement);
+            if let Some((changes, velocity)) = innovation.zip(velocity).filter(|_| !hypothesis.course.turns()) {
+                gained = changes.log_likelihood - velocity;
+            }
         }
-        if let Some((changes, velocity)) = changes.zip(velocity.filter(|logarithm| logarithm.is_finite())) {
-            self.over_velocity += changes.log_likelihood - velocity;
-        }
+        self.over_velocity += if gained.is_finite() { gained } else { 0.0 };
         self.frames = (self.frames + 1).min(tuning::FRAMES);
     }
 
@@ -126,10 +127,10 @@ impl<const N: usize> SteadyChange<N> {
         Some(PossibleChange { probability, apart: carried(apart), beside: carried(beside) })
     }
 
-    /// Logarithm, at most 0, of how many times as probable frames are by a constant velocity of the centroid as by that of a point near it, which explains
-    /// what looks like a change of the former. `changes` are those of the velocity of the centroid.
+    /// `ln(L_0 / L_d)` of (82a), at most 0: the likelihood of the frames if the centroid runs straight, over that if a point near it does. The latter explains what
+    /// looks like a change of the velocity of the centroid.
     fn against(&self, changes: &Changes, k: usize) -> Option<f64> {
-        let any = changes.some_of_size(&(0..k), tuning::ANY)?;
+        let any = changes.of_sizes(&sized(&(0..k), tuning::ANY))?;
         Some((self.over_velocity - any.logarithm).min(0.0))
     }
 }
@@ -147,43 +148,61 @@ struct Weighed {
     beside: CentredMatrix,
 }
 
-/// Rates of change of some size, in their units.
-struct OfSize {
+/// Rates of change of some sizes beforehand, in their units.
+struct OfSizes {
     /// Logarithm of their Bayes factor against none.
     logarithm: f64,
-    sizes: CentredVector,
+    found: CentredVector,
     /// Share of their variance that is left.
     left: CentredMatrix,
 }
 
+/// A size of some parameters, none of the others.
+fn sized(members: &Range<usize>, size: f64) -> CentredVector {
+    CentredVector::from_fn(|i, _| if members.contains(&i) { size } else { 0.0 })
+}
+
 impl Changes {
-    /// Changes of some parameters, of a size beforehand.
-    fn some_of_size(&self, members: &Range<usize>, size: f64) -> Option<OfSize> {
-        let variance = size * size;
-        let among = |i: usize, j: usize| members.contains(&i) && members.contains(&j);
-        let of_prior = CentredMatrix::from_fn(|i, j| {
-            f64::from(u8::from(i == j)) + if among(i, j) { variance * self.information[(i, j)] } else { 0.0 }
-        });
+    /// Changes of sizes beforehand, as deviations.
+    fn of_sizes(&self, sizes: &CentredVector) -> Option<OfSizes> {
+        let of_prior =
+            CentredMatrix::from_fn(|i, j| f64::from(u8::from(i == j)) + sizes[i] * self.information[(i, j)] * sizes[j]);
         let factor = of_prior.cholesky()?;
-        let score = CentredVector::from_fn(|i, _| if members.contains(&i) { self.score[i] } else { 0.0 });
-        let sizes = factor.solve(&score) * variance;
-        let logarithm = 0.5 * (score.dot(&sizes) - factor.ln_determinant());
-        Some(OfSize { logarithm, sizes, left: factor.inverse() })
+        let score = self.score.component_mul(sizes);
+        let found = factor.solve(&score);
+        let logarithm = 0.5 * (score.dot(&found) - factor.ln_determinant());
+        Some(OfSizes { logarithm, found: found.component_mul(sizes), left: factor.inverse() })
     }
 
-    /// Weighs changes of k parameters, with a logarithm that comes to those of all Bayes factors.
+    /// Changes of some of k parameters, with `against` added to the logarithm: what the velocity of the centroid seems to do has another explanation. That
+    /// says nothing of the rates, which may change beside whatever that is.
+    fn of_members(&self, (members, size): (&Range<usize>, f64), k: usize, against: f64) -> Option<OfSizes> {
+        let mut alone = self.of_sizes(&sized(members, size))?;
+        alone.logarithm += against;
+        let velocity = k - 2..k;
+        if against >= 0.0 || members.end > velocity.start {
+            return Some(alone);
+        }
+        let any_velocity = sized(&velocity, tuning::ANY);
+        let mut beside = self.of_sizes(&(sized(members, size) + any_velocity))?;
+        beside.logarithm -= self.of_sizes(&any_velocity)?.logarithm;
+        velocity.for_each(|i| beside.found[i] = 0.0);
+        Some(if beside.logarithm > alone.logarithm { beside } else { alone })
+    }
+
+    /// Weighs changes of k parameters, with a logarithm `against` those of the velocity.
     fn weighed(&self, k: usize, against: f64) -> Option<Weighed> {
         let some = [0..k - 2, k - 2..k, 0..k];
         let each = tuning::PRIOR / (some.len() * tuning::SIZES.len()) as f64;
         let mut all = 1.0 - tuning::PRIOR;
         let (mut probability, mut apart, mut beside) = (0.0, CentredMatrix::zeros(), CentredMatrix::zeros());
         for (members, size) in some.iter().flat_map(|members| tuning::SIZES.map(|size| (members, size))) {
-            let OfSize { logarithm, sizes, left } = self.some_of_size(members, size)?;
-            let weight = each * (logarithm + against).min(tuning::LARGEST_LOGARITHM).exp();
+            let OfSizes { logarithm, found, left } = self.of_members((members, size), k, against)?;
+            let weight = each * logarithm.min(tuning::LARGEST_LOGARITHM).exp();
             all += weight;
             // Of a size that frames do not tell from none, a change is no other motion.
             probability += weight * members.clone().map(|i| 1.0 - left[(i, i)]).fold(0.0, f64::max);
-            apart += sizes * sizes.transpose() * weight;
+            apart += found * found.transpose() * weight;
             let is_among = |i: usize| members.contains(&i);
             beside += CentredMatrix::from_fn(|i, j| {
                 if is_among(i) && is_among(j) { weight * size * size * left[(i, j)] } else { 0.0 }
@@ -217,6 +236,21 @@ mod tests {
         let size = clear.apart[(0, 0)].sqrt();
         assert!((2.7..3.0).contains(&size), "{size}");
         assert!((0.4..0.5).contains(&clear.beside[(0, 0)].sqrt()), "{}", clear.beside);
+    }
+
+    #[test]
+    fn what_explains_a_change_of_the_velocity_rules_out_no_change_of_the_spin() {
+        let information = CentredMatrix::from_diagonal(&CentredVector::from_fn(|i, _| if i < 3 { 4.0 } else { 1.0 }));
+        // Six deviations of the turn, or of the velocity; with nothing else to explain them, and with something that does so far better.
+        let [[spin, velocity], [spin_beside, velocity_beside]] = [0.0, -100.0].map(|against| {
+            [0, 2].map(|number| {
+                let score = CentredVector::from_fn(|i, _| if i == number { 12.0 } else { 0.0 });
+                Changes { information, score }.weighed(3, against).expect("regular")
+            })
+        });
+        assert!([spin, velocity].iter().all(|weighed| weighed.probability > 0.9));
+        assert!(spin_beside.probability > 0.9 && spin_beside.apart[(0, 0)] > 2.0, "{}", spin_beside.probability);
+        assert!(velocity_beside.probability < 1e-3, "{}", velocity_beside.probability);
     }
 
     /// Columns of the propagation of errors over a step, by finite differences and as the covariance is carried.

@@ -22,8 +22,9 @@ impl<const N: usize> Hypothesis<N> {
             (9, _) => TurnedMotion::<1>::new(course, maps, velocities, seconds).carry::<N, 9>(p),
             (12, 8) => TurnedMotion::<2>::new(course, maps, velocities, seconds).carry::<N, 8>(p),
             (12, _) => TurnedMotion::<2>::new(course, maps, velocities, seconds).carry::<N, 12>(p),
-            (_, 12) => TurnedMotion::<RATES>::new(course, maps, velocities, seconds).carry::<N, 12>(p),
-            _ => TurnedMotion::<RATES>::new(course, maps, velocities, seconds).carry::<N, 18>(p),
+            (18, 12) => TurnedMotion::<RATES>::new(course, maps, velocities, seconds).carry::<N, 12>(p),
+            (18, _) => TurnedMotion::<RATES>::new(course, maps, velocities, seconds).carry::<N, 18>(p),
+            _ => unreachable!("projective motion is carried with its perspective"),
         }
     }
 }

@@ -48,7 +48,7 @@ const GROUPS_BESIDE_SHEAR: [(WrongFamily, Members); 3] =
 const ALL_OF_EDGES: [usize; 4] = [EDGES[0], EDGES[1], FOURTH_OF_EDGES[0], FOURTH_OF_EDGES[1]];
 
 /// Motions that pictures have now and then, a little: of edges that light displaces, of pixels that are not square or a plane that is tilted, of
-/// perspective, of rows that are read one after the other, and of a lens. Edges are the first.
+/// perspective, of rows that are read one after the other, and of a lens.
 const OF_PICTURES: [Members; 5] = [&EDGES, &SHEAR, &PERSPECTIVE, &[READ_OUT], &[LENS[0]]];
 
 /// The same where the model has shear.
@@ -122,12 +122,15 @@ mod tests {
     #[test]
     fn a_camera_is_blamed_only_for_what_it_explains() {
         assert_eq!(name_of(&[], 0.0, 0.0), None);
-        for alone in [Growth, Shear, Perspective, RollingShutter, Lens] {
+        for alone in [Growth, Shear, Perspective, RollingShutter, Lens, Shape] {
             assert_eq!(name_of(&[(alone, 0.01)], 0.4, 4.0), Some(alone));
         }
         for camera in [RollingShutter, Lens] {
             assert_eq!(name_of(&[(camera, 0.01), (Shear, 0.001)], 0.4, 0.0), Some(Shape));
         }
+        // Edges that light displaces, and a bit of each camera.
+        let names = [RollingShutter, Lens].map(|camera| name_of(&[(Shape, 0.01), (camera, 0.001)], 0.4, 0.0));
+        assert_eq!(names, [Some(Shape); 2]);
         // What the object does itself is named beside whatever else there is.
         let names = [Growth, Shear].map(|first| name_of(&[(first, 0.01), (Lens, 0.02)], 0.4, 9.0));
         assert_eq!(names, [Some(Growth), Some(Shear)]);

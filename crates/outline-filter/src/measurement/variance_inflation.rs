@@ -26,7 +26,7 @@ impl VarianceInflation {
     pub(super) fn add(&mut self, square: f64, share: f64) {
         self.points = (self.points + share).min(tuning::INFLATION_MEMORY);
         let square = square.min(tuning::INFLATION_CLIPPED * self.variance);
-        // Most cells remember as many points as they may: of those both are known beforehand, which take longer than all else here.
+        // A root and a quotient take longer than all else here. Most cells remember as many points as they may, and of those both are constants.
         let [of_all, expected] = if self.points < tuning::INFLATION_MEMORY {
             Self::share_and_expected(self.points)
         } else {

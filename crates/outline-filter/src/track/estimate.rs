@@ -53,7 +53,7 @@ impl Track {
     /// Deviations along each axis, normalised, of what a shift of the whole outline makes of its place since the first frame, and of the velocity of
     /// its plane, as far as light from a side may displace edges: that shifts the outline besides, by as much in the picture while the object turns.
     pub(crate) fn shift_by_light(&self, unmodelled: &UnmodelledEstimate) -> [f64; 2] {
-        // Stretch and skew are hardly told from it where an outline is nearly round.
+        // Of an outline that is nearly round stretch and skew are hardly told from it. Of others this is too wide where a plane is tilted.
         let moment = |numbers: [usize; 2]| numbers.into_iter().map(|l| unmodelled.moments[(l, l)]).sum::<f64>();
         let second_harmonic = moment(EDGES).max(moment(SHEAR)).max(0.0).sqrt();
         let linear = self.belief.pose.fixed_view::<2, 2>(0, 0);

@@ -22,7 +22,7 @@ pub(crate) const LENS: [usize; 3] = [6, 7, 8];
 /// Edges that are displaced by the direction they face, as light and shadows displace them. Of a displacement `max(0, n . l)` the
 /// harmonics of even order are left beside a shift: here the second of the angle of the normal n in the image.
 pub(crate) const EDGES: [usize; 2] = [9, 10];
-/// The fourth harmonic of that, asked for where the model has growth and shear, which what a rolling shutter does is as well: it has their numbers.
+/// The fourth harmonic. Beside a model that has growth and shear it takes the numbers of growth and of the rolling shutter, which is a shear.
 pub(crate) const FOURTH_OF_EDGES: [usize; 2] = [GROWTH, READ_OUT];
 
 pub(crate) type UnmodelledVector = SVector<f64, UNMODELLED>;
