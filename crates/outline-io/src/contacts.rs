@@ -11,7 +11,7 @@ const REACH: f64 = 1.0;
 /// half of them, which may begin with the contact, and then for as long again.
 const MEMORY: u64 = 2 * PATIENCE;
 
-/// Forgotten objects and pairs that are kept: of more than a user will look at, the first pairs and the last objects.
+/// Forgotten objects and pairs that are kept: of more than a user will look at, the first pairs and the objects seen last.
 const MOST_KEPT: usize = 100;
 
 /// An object that was seen after another one had been forgotten while it touched a third, near it and soon after: it may be that one.
@@ -78,9 +78,6 @@ impl Contacts {
             Some(known) => *known = touching,
             None => self.hidden.push(touching),
         }
-        if self.hidden.len() > MOST_KEPT {
-            self.hidden.remove(0);
-        }
     }
 
     /// An object is seen by itself.
@@ -95,6 +92,13 @@ impl Contacts {
     pub(crate) fn forget(&mut self, name: u64) {
         let touching = self.hidden.iter_mut().filter(|hidden| hidden.is_touching(name));
         touching.for_each(|hidden| hidden.whereabouts = Whereabouts::Forgotten);
+        // Those that touch others are no more than are known, and are touched again in the next picture.
+        let is_forgotten = |hidden: &&Hidden| hidden.whereabouts != Whereabouts::Touching;
+        if self.hidden.iter().filter(is_forgotten).count() > MOST_KEPT {
+            let oldest = self.hidden.iter().filter(is_forgotten).min_by_key(|hidden| hidden.place.frame);
+            let oldest = oldest.map(|hidden| hidden.name);
+            self.hidden.retain(|hidden| hidden.whereabouts == Whereabouts::Touching || Some(hidden.name) != oldest);
+        }
     }
 
     /// A picture shows an object that has no name yet, and gets this one.
@@ -131,6 +135,8 @@ impl Hidden {
 
 #[cfg(test)]
 mod tests {
+    use std::ops::Range;
+
     use super::*;
 
     fn at(frame: u64, x: f64) -> Place {
@@ -142,10 +148,16 @@ mod tests {
         contacts.after().iter().map(|after| (after.name, after.forgotten)).collect()
     }
 
+    /// Objects of these names touch in frames 0 to 9.
+    fn touching(names: Range<u64>) -> Contacts {
+        let mut contacts = Contacts::default();
+        (0..10).for_each(|frame| names.clone().for_each(|name| contacts.touch(name, at(frame, 0.0))));
+        contacts
+    }
+
     /// Two objects touch in frames 0 to 9, and are forgotten.
     fn two_forgotten() -> Contacts {
-        let mut contacts = Contacts::default();
-        (0..10).for_each(|frame| [0, 1].into_iter().for_each(|name| contacts.touch(name, at(frame, 0.0))));
+        let mut contacts = touching(0..2);
         [0, 1].into_iter().for_each(|name| contacts.forget(name));
         contacts
     }
@@ -176,6 +188,31 @@ mod tests {
         (201..300).for_each(|frame| contacts.see(2, at(frame, 200.0)));
         contacts.name(4, at(300, 200.0));
         assert_eq!(pairs(&contacts).len(), 4);
+    }
+
+    #[test]
+    fn a_forgotten_object_among_150_that_go_on_touching_is_told() {
+        for forgotten in [0, 75, 149] {
+            let mut contacts = touching(0..150);
+            contacts.forget(forgotten);
+            for frame in 10..15 {
+                (0..150).filter(|name| *name != forgotten).for_each(|name| contacts.touch(name, at(frame, 0.0)));
+            }
+            contacts.name(150, at(15, 0.0));
+            assert_eq!(pairs(&contacts), [(150, forgotten)]);
+        }
+    }
+
+    #[test]
+    fn of_very_many_forgotten_objects_those_seen_last_are_told() {
+        let mut contacts = touching(0..150);
+        // The first of them are seen for one frame more.
+        (0..50).for_each(|name| contacts.touch(name, at(10, 0.0)));
+        (0..150).for_each(|name| contacts.forget(name));
+        contacts.name(150, at(15, 0.0));
+        let told: Vec<u64> = pairs(&contacts).into_iter().map(|(_, forgotten)| forgotten).collect();
+        let expected: Vec<u64> = (0..50).chain(100..150).collect();
+        assert_eq!(told, expected);
     }
 
     #[test]
