@@ -54,7 +54,7 @@ impl Poses {
     pub fn take(&mut self, observation: &Observation) -> Option<Vec<PoseParameter>> {
         let (segment, source) = (observation.segment, PoseSource::of(observation.is_accepted()));
         let state = observation.present_state()?;
-        Some(self.of_state(&observation.object, (segment, source, WholeTurns::of(observation)), state))
+        Some(self.of_state(&observation.object, (segment, source, TurnAmbiguity::of(observation)), state))
     }
 
     /// Forgets an object: if the name comes again, it is that of a new one.
@@ -66,7 +66,7 @@ impl Poses {
     pub(super) fn of_state(
         &mut self,
         object: &str,
-        (segment, source, whole_turns): (usize, PoseSource, WholeTurns),
+        (segment, source, turn): (usize, PoseSource, TurnAmbiguity),
         state: &MotionState,
     ) -> Vec<PoseParameter> {
         let mut pose = state.pose_parameters();
@@ -80,7 +80,7 @@ impl Poses {
             }
             angle.go_on(state, source, &mut pose);
         }
-        if whole_turns == WholeTurns::Ambiguous {
+        if turn == TurnAmbiguity::Ambiguous {
             pose.iter_mut().filter(|parameter| parameter.name == "angle").for_each(|angle| {
                 (angle.value, angle.standard_deviation) = (f64::NAN, f64::INFINITY);
             });
@@ -92,18 +92,18 @@ impl Poses {
     }
 }
 
-/// Whether the outlines tell how many whole turns an object makes from frame to frame.
+/// Whether the outlines leave open by how much an object turns from frame to frame: [`Observation::ambiguity`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum WholeTurns {
-    /// They do, or the smallest turn is to be taken.
-    Known,
-    /// They do not decide between turns, of which some may lead to another pose as well.
+pub(super) enum TurnAmbiguity {
+    /// One turn is stated. Where several explain the outlines and nothing decides, that is the smallest, if the others are far larger.
+    Unambiguous,
+    /// Several turns explain the outlines, and none is stated. They may be whole turns apart, and lead to the same pose, or to different ones.
     Ambiguous,
 }
 
-impl WholeTurns {
+impl TurnAmbiguity {
     pub(super) fn of(observation: &Observation) -> Self {
-        if observation.ambiguity.is_some() { Self::Ambiguous } else { Self::Known }
+        if observation.ambiguity.is_some() { Self::Ambiguous } else { Self::Unambiguous }
     }
 }
 

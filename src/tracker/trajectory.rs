@@ -11,7 +11,7 @@ use super::{
     continuous_angle::PoseSource,
     not_stated::NotStated,
     observation::Observation,
-    poses::{Poses, WholeTurns},
+    poses::{Poses, TurnAmbiguity},
     result::VELOCITY_NAMES,
 };
 use crate::rejection::FrameRejection;
@@ -64,7 +64,7 @@ pub struct TrajectoryRow {
     /// Why each parameter of the motion that was not stated then was not, and the turn of the pose, where it was not.
     not_stated: Vec<(&'static str, NotStated)>,
     turn_not_stated: NotStated,
-    whole_turns: WholeTurns,
+    turn_ambiguity: TurnAmbiguity,
     velocity_not_stated: Option<NotStated>,
 }
 
@@ -155,7 +155,7 @@ impl Trajectory {
             state: observation.state.clone(),
             not_stated: motion.map_or_else(Vec::new, |motion| observation.unstated(motion.model())),
             turn_not_stated: observation.turn_not_stated(),
-            whole_turns: WholeTurns::of(observation),
+            turn_ambiguity: TurnAmbiguity::of(observation),
             velocity_not_stated: observation.velocity_not_stated(),
         });
     }
@@ -184,7 +184,8 @@ impl Trajectory {
         let mut poses = Poses::new(scale);
         let rows = self.rows.iter().map(|row| {
             let state = row.state()?;
-            let pose = poses.of_state(&row.object, (row.segment, PoseSource::of(row.accepted), row.whole_turns), state);
+            let pose =
+                poses.of_state(&row.object, (row.segment, PoseSource::of(row.accepted), row.turn_ambiguity), state);
             let motion = state.motion();
             let velocity = row.velocity_not_stated.is_none().then(|| state.velocity_of_middle());
             Some(PoseAndMotion {
@@ -246,18 +247,18 @@ fn smooth_object(rows: &mut [&mut TrajectoryRow], noise: &ProcessNoise) -> Resul
         // What the last frame does not tell of a constant motion, for an ambiguous turn say, none does; what it tells, all do.
         let velocity_not_stated = from[count - 1].velocity_not_stated;
         let last = from[..count].iter().rev().find(|row| row.state().is_some());
-        let whole_turns = last.map_or(WholeTurns::Known, |row| row.whole_turns);
+        let turn_ambiguity = last.map_or(TurnAmbiguity::Unambiguous, |row| row.turn_ambiguity);
         let (segment, first) = (from[0].segment, &states[0]);
         let is_of_beginning =
             |row: &&mut &mut TrajectoryRow| row.accepted && row.segment == segment && row.state.is_none();
         for row in before.iter_mut().rev().take_while(is_of_beginning) {
             row.state = row.time.map(|time| first.predicted(time, noise));
-            (row.velocity_not_stated, row.whole_turns) = (velocity_not_stated, whole_turns);
+            (row.velocity_not_stated, row.turn_ambiguity) = (velocity_not_stated, turn_ambiguity);
         }
         let known = from[..count].iter_mut().filter(|row| row.state().is_some());
         known.zip(states).for_each(|(row, state)| {
             row.state = Some(state);
-            (row.velocity_not_stated, row.whole_turns) = (velocity_not_stated, whole_turns);
+            (row.velocity_not_stated, row.turn_ambiguity) = (velocity_not_stated, turn_ambiguity);
         });
     }
     Ok(())
