@@ -188,7 +188,7 @@ def track(
         the middle of the object (motion filter), in the unit of `x` and `y` per second; `reason`, why the frame was not accepted; `unstated`,
         which values of the row are not stated and why, such as `omega ambiguous; b1 ambiguous`, by the words of `Observation.not_stated`;
         `point_x` and `point_y`, where that middle is (motion filter), which need not be at `x` and `y`.
-        NaN where something is not known, an empty text where there is nothing to tell; in a dict these two columns are arrays of objects.
+        NaN where something is not known, an empty text where there is nothing to tell; `reason` and `unstated` are arrays of objects in a dict.
         Angles are in radians since the first frame and continuous, NaN while whole turns are ambiguous; x and y say where the centre of
         the first outline is.
 
