@@ -14,7 +14,7 @@ use freeform_motion::{SimulatedMotion, outline_of_polygon};
 use crate::args::{PictureOptions, TrackOptions};
 use crate::awaited::{Awaited, Waiting};
 use crate::failure::{Failure, note, plain, warn, warn_of};
-use crate::picture_input::{ASSUMED_RATE, PictureInput};
+use crate::picture_input::{ASSUMED_RATE, PictureInput, Purpose};
 use crate::progress::Verbosity;
 use crate::seen::Item;
 
@@ -244,7 +244,8 @@ impl Input {
     /// As that, with what only many outlines together tell, which takes a while to be looked for: after all have been read.
     pub(crate) fn closing_warnings(&self) -> Vec<(OriginWarning, String)> {
         let of_aspect = self.pictures().and_then(PictureInput::warning_of_aspect);
-        self.origin_warnings().into_iter().chain(of_aspect).collect()
+        let of_contact = self.pictures().and_then(|pictures| pictures.warning_of_contact(Purpose::Motions));
+        self.origin_warnings().into_iter().chain(of_aspect).chain(of_contact).collect()
     }
 
     /// What a table has said so far of how its outlines were found.
@@ -307,8 +308,8 @@ impl Input {
     }
 
     /// Says what was seen to be wrong while the input was read.
-    pub(crate) fn tell_in_the_end(&self) {
-        let remarks = self.pictures().map(PictureInput::closing_remarks).unwrap_or_default();
+    pub(crate) fn tell_in_the_end(&self, purpose: Purpose) {
+        let remarks = self.pictures().map(|pictures| pictures.closing_remarks(purpose)).unwrap_or_default();
         remarks.iter().for_each(|(warning, message)| warn_of(warning.code(), message));
     }
 

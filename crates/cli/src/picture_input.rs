@@ -31,6 +31,8 @@ use crate::seen::{Item, Missing, MissingKind};
 use crate::traced_input::Traced;
 use crate::tracing_choice::{Chosen, choose, options_of};
 
+pub(crate) use self::warnings::Purpose;
+
 /// Pictures that are traced side by side for each core, so that none stands still while the next ones are read.
 const PICTURES_OF_CORE: usize = 2;
 

@@ -7,6 +7,7 @@ use crate::failure::{Failure, note, warn};
 use crate::input::Input;
 use crate::interrupt;
 use crate::left_out::MissingWarnings;
+use crate::picture_input::Purpose;
 use crate::progress::{Progress, Verbosity, would_stand_in_output};
 use crate::seen::{Item, Left, Missing};
 
@@ -188,7 +189,7 @@ impl<'a> Reader<'a> {
     fn finish(self) -> Option<Failure> {
         let Self { input, verbosity, progress, warnings, failure, seeker } = self;
         if !verbosity.is_quiet() {
-            progress.pause(|| input.tell_in_the_end());
+            progress.pause(|| input.tell_in_the_end(Purpose::Motions));
             edge_notes(&seeker).iter().for_each(|told| progress.pause(|| note(told)));
         }
         warnings.finish().for_each(|warning| progress.pause(|| warn(&warning)));

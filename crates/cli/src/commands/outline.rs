@@ -8,12 +8,12 @@ use freeform_motion::outline_io::{
 use super::simulate::SequenceError;
 use crate::args::OutlineArgs;
 use crate::awaited::Waiting;
-use crate::failure::{Failure, warn, warn_of};
+use crate::failure::{Failure, warn};
 use crate::input::Input;
 use crate::interrupt;
 use crate::left_out::MissingWarnings;
 use crate::output::{DrawnPictures, Sink, refuse_overwriting};
-use crate::picture_input::PictureInput;
+use crate::picture_input::Purpose;
 use crate::progress::{Progress, Verbosity};
 use crate::seen::{Item, Missing};
 
@@ -99,9 +99,7 @@ fn trace_all(args: &OutlineArgs, mut input: Input, sink: &mut Sink) -> Result<Tr
         }
     }
     if !args.quiet {
-        progress.pause(|| input.tell_in_the_end());
-        let of_contact = input.pictures().and_then(PictureInput::warning_of_contact);
-        of_contact.iter().for_each(|(warning, told)| progress.pause(|| warn_of(warning.code(), told)));
+        progress.pause(|| input.tell_in_the_end(Purpose::Outlines));
     }
     warnings.finish().filter(|_| !args.quiet).for_each(|warning| progress.pause(|| warn(&warning)));
     drawings.map_or(Ok(()), Drawings::finish)?;

@@ -7,23 +7,51 @@ use crate::label_choice::label_warnings;
 /// Objects that are told to be perhaps others.
 const OBJECTS_TOLD: usize = 5;
 
+/// What is made of pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    /// A table of outlines.
+    Outlines,
+    /// Motions of objects, which are looked for by their edges while they touch others.
+    Motions,
+}
+
+impl Purpose {
+    /// What objects that may be others mean for it, and what to do.
+    const fn after_contact(self) -> &'static str {
+        match self {
+            Self::Outlines => {
+                "'freeform identify' of the pictures themselves looks for its edges meanwhile, so that it may keep its number"
+            }
+            Self::Motions => {
+                "its edges were not found all the while, so that results of two objects may be those of one, or of several together"
+            }
+        }
+    }
+}
+
 impl PictureInput {
-    /// What is to be said after all have been read: of the labels, or of what the outlines say of the pixels, with the codes.
-    pub(crate) fn closing_remarks(&self) -> Vec<(OriginWarning, String)> {
-        let of_labels = self.label_warnings();
-        if of_labels.is_empty() { self.warning_of_aspect().into_iter().collect() } else { of_labels }
+    /// What is to be said after all have been read: of the labels, or of what the outlines say of the pixels, and of objects that may be others,
+    /// with the codes.
+    pub(crate) fn closing_remarks(&self, purpose: Purpose) -> Vec<(OriginWarning, String)> {
+        let mut remarks = self.label_warnings();
+        if remarks.is_empty() {
+            remarks.extend(self.warning_of_aspect());
+        }
+        remarks.extend(self.warning_of_contact(purpose));
+        remarks
     }
 
-    /// What to do about objects that have other numbers after they have touched others, with the code.
-    pub(crate) fn warning_of_contact(&self) -> Option<(OriginWarning, String)> {
+    /// Which objects have other numbers after they have touched others, with the code.
+    pub(crate) fn warning_of_contact(&self, purpose: Purpose) -> Option<(OriginWarning, String)> {
         let after = self.traced.after_contact();
         let each: Vec<String> = after.chunk_by(|a, b| a.name == b.name).map(may_be).collect();
         let (told, others) = each.split_at_checked(OBJECTS_TOLD).unwrap_or((&each, &[]));
         let others = if others.is_empty() { String::new() } else { format!("; and {} more", others.len()) };
         let message = format!(
-            "{}{others}: by itself or with what it touched for long; 'freeform identify' of the pictures themselves looks for its edges \
-             meanwhile, so that it may keep its number",
-            told.join("; ")
+            "{}{others}: by itself or with what it touched for long; {}",
+            told.join("; "),
+            purpose.after_contact()
         );
         (!after.is_empty()).then_some((OriginWarning::NewAfterContact, message))
     }
