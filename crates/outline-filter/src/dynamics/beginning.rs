@@ -3,7 +3,7 @@ use freeform_riccati::MotionModel;
 use nalgebra::{SMatrix, SVector};
 
 use super::{
-    centred::{CentredVector, carry, centred_generator, centred_order, parts},
+    centred::{CentredVector, by_rates, carry},
     course::Course,
     hypothesis::Hypothesis,
 };
@@ -41,15 +41,13 @@ impl<const N: usize> Hypothesis<N> {
     fn take_way_as_straight(&mut self, model: MotionModel, seconds: f64) {
         let k = Self::K;
         let motion = &self.mean.as_slice()[k..2 * k];
-        let velocity = parts(&centred_generator(model, motion)).1;
         // In centred order the rates come first, perspective or not.
         let (of_rates, count) = if model == MotionModel::Projective { (MotionModel::Affine, 6) } else { (model, k) };
         let back = of_rates.linear_flow_with_integral(&motion[..count], -seconds).1 / -seconds;
-        let chord = back * velocity;
+        let chord = back * self.mean.fixed_rows::<2>(2 * k - 2);
         let mut change = SMatrix::<f64, N, N>::identity();
         change.fixed_view_mut::<2, 2>(2 * k - 2, 2 * k - 2).copy_from(&back);
-        for (j, of_model) in centred_order(model).iter().enumerate().take(k - 2) {
-            let by_rate = parts(&model.basis()[*of_model]).0 * chord * (-0.5 * seconds);
+        for (j, by_rate) in by_rates(model, &(chord * (-0.5 * seconds))).enumerate() {
             change.fixed_view_mut::<2, 1>(2 * k - 2, k + j).copy_from(&by_rate);
         }
         self.mean.fixed_rows_mut::<2>(2 * k - 2).copy_from(&chord);

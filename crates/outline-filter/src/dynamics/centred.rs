@@ -91,6 +91,13 @@ pub(super) fn centred_generator(model: MotionModel, parameters: &[f64]) -> Matri
     }
 }
 
+/// What errors of the rates make of a velocity that they turn a lever into: by columns, the velocity of the lever by a unit of each.
+pub(super) fn by_rates(model: MotionModel, lever: &Vector2<f64>) -> impl Iterator<Item = Vector2<f64>> {
+    let (basis, order) = (model.basis(), centred_order(model));
+    let count = model.parameter_count() - 2;
+    order.iter().take(count).map(move |of_model| parts(&basis[*of_model]).0 * lever)
+}
+
 /// A shift of the plane.
 pub(super) fn moved_by(x: f64, y: f64) -> Matrix3<f64> {
     Matrix3::new(1.0, 0.0, x, 0.0, 1.0, y, 0.0, 0.0, 1.0)

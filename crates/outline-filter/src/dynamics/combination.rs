@@ -3,7 +3,7 @@ use freeform_riccati::MAX_PARAMETERS;
 use nalgebra::{SMatrix, SVector};
 
 use super::{
-    centred::{Summary, carried, centred_generator, centred_order, of_both, parts},
+    centred::{Summary, by_rates, carried, centred_generator, of_both, parts},
     course::{Course, PointOfBody},
     hypothesis::Hypothesis,
     interacting::{InteractingHypotheses, MOST},
@@ -84,9 +84,8 @@ impl<const N: usize> InteractingHypotheses<N> {
         let apart = hypothesis.mean.fixed_rows::<2>(k - 2).into_owned();
         let mut change = SMatrix::<f64, N, N>::identity();
         change.fixed_view_mut::<2, 2>(2 * k - 2, k - 2).copy_from(&-hypothesis.rates(model));
-        for (j, of_model) in centred_order(model).iter().enumerate().take(k - 2) {
-            let by_rate = parts(&model.basis()[*of_model]).0 * apart;
-            change.fixed_view_mut::<2, 1>(2 * k - 2, k + j).copy_from(&-by_rate);
+        for (j, by_rate) in by_rates(model, &-apart).enumerate() {
+            change.fixed_view_mut::<2, 1>(2 * k - 2, k + j).copy_from(&by_rate);
         }
         change
     }

@@ -6,7 +6,7 @@ use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector, map_point};
 use nalgebra::{Matrix2, Matrix3, Point2, SMatrix, Vector2};
 
 use super::{
-    centred::{CentredVector, carry, centred_generator, centred_order, moved_by, parts},
+    centred::{CentredVector, by_rates, carry, centred_generator, centred_order, moved_by, parts},
     course::Course,
     hypothesis::Hypothesis,
     step::{Step, turned_along},
@@ -123,8 +123,7 @@ fn moved_by_generator(motion: &CentredVector, acceleration: &CentredVector, dt: 
     // To the second order: the velocity, and half of what the rates make of it.
     let mut shift_of_motion = SMatrix::<f64, 2, MAX_PARAMETERS>::zeros();
     shift_of_motion.fixed_view_mut::<2, 2>(0, RATES).copy_from(&(Matrix2::identity() * dt + linear * (0.5 * dt * dt)));
-    for (j, of_model) in centred_order(MODEL).iter().enumerate().take(RATES) {
-        let by_rate = parts(&MODEL.basis()[*of_model]).0 * velocity * (0.5 * dt * dt);
+    for (j, by_rate) in by_rates(MODEL, &(velocity * (0.5 * dt * dt))).enumerate() {
         shift_of_motion.fixed_view_mut::<2, 1>(0, j).copy_from(&by_rate);
     }
     // The motion about a centroid that is elsewhere: its derivative by that place is a commutator.

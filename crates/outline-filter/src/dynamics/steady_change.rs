@@ -2,7 +2,7 @@
 use std::ops::Range;
 
 use freeform_riccati::MotionModel;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{Cholesky, Const, SMatrix, SVector};
 
 use super::{
     centred::{CentredDeviations, CentredMatrix, CentredVector, LARGEST},
@@ -127,8 +127,8 @@ impl<const N: usize> SteadyChange<N> {
         Some(PossibleChange { probability, apart: carried(apart), beside: carried(beside) })
     }
 
-    /// `ln(L_0 / L_d)` of (82a), at most 0: the likelihood of the frames if the centroid runs straight, over that if a point near it does. The latter explains what
-    /// looks like a change of the velocity of the centroid.
+    /// `ln(L_0 / L_d)` of (82a), at most 0: the likelihood of the frames if the centroid runs straight, over that if a point near it does. The
+    /// latter explains what looks like a change of the velocity of the centroid.
     fn against(&self, changes: &Changes, k: usize) -> Option<f64> {
         let any = changes.of_sizes(&sized(&(0..k), tuning::ANY))?;
         Some((self.over_velocity - any.logarithm).min(0.0))
@@ -153,8 +153,8 @@ struct OfSizes {
     /// Logarithm of their Bayes factor against none.
     logarithm: f64,
     found: CentredVector,
-    /// Share of their variance that is left.
-    left: CentredMatrix,
+    /// Inverse of the share of their variance that is left.
+    factor: Cholesky<f64, Const<LARGEST>>,
 }
 
 /// A size of some parameters, none of the others.
@@ -171,42 +171,41 @@ impl Changes {
         let score = self.score.component_mul(sizes);
         let found = factor.solve(&score);
         let logarithm = 0.5 * (score.dot(&found) - factor.ln_determinant());
-        Some(OfSizes { logarithm, found: found.component_mul(sizes), left: factor.inverse() })
+        Some(OfSizes { logarithm, found: found.component_mul(sizes), factor })
     }
 
-    /// Changes of some of k parameters, with `against` added to the logarithm: what the velocity of the centroid seems to do has another explanation. That
-    /// says nothing of the rates, which may change beside whatever that is.
-    fn of_members(&self, (members, size): (&Range<usize>, f64), k: usize, against: f64) -> Option<OfSizes> {
-        let mut alone = self.of_sizes(&sized(members, size))?;
-        alone.logarithm += against;
-        let velocity = k - 2..k;
-        if against >= 0.0 || members.end > velocity.start {
-            return Some(alone);
-        }
-        let any_velocity = sized(&velocity, tuning::ANY);
-        let mut beside = self.of_sizes(&(sized(members, size) + any_velocity))?;
-        beside.logarithm -= self.of_sizes(&any_velocity)?.logarithm;
-        velocity.for_each(|i| beside.found[i] = 0.0);
-        Some(if beside.logarithm > alone.logarithm { beside } else { alone })
+    /// Changes of rates of a size beside whatever the velocity does: what explains that says nothing of the rates. `any` are those of the velocity alone.
+    fn beside_velocity(&self, sizes: &CentredVector, velocity: &Range<usize>, any: &OfSizes) -> Option<OfSizes> {
+        let mut beside = self.of_sizes(&(sizes + sized(velocity, tuning::ANY)))?;
+        beside.logarithm -= any.logarithm;
+        velocity.clone().for_each(|i| beside.found[i] = 0.0);
+        Some(beside)
     }
 
     /// Weighs changes of k parameters, with a logarithm `against` those of the velocity.
     fn weighed(&self, k: usize, against: f64) -> Option<Weighed> {
-        let some = [0..k - 2, k - 2..k, 0..k];
+        let (rates, velocity) = (0..k - 2, k - 2..k);
+        let any_velocity = if against < 0.0 { Some(self.of_sizes(&sized(&velocity, tuning::ANY))?) } else { None };
+        let some = [rates.clone(), velocity.clone(), 0..k];
         let each = tuning::PRIOR / (some.len() * tuning::SIZES.len()) as f64;
         let mut all = 1.0 - tuning::PRIOR;
         let (mut probability, mut apart, mut beside) = (0.0, CentredMatrix::zeros(), CentredMatrix::zeros());
         for (members, size) in some.iter().flat_map(|members| tuning::SIZES.map(|size| (members, size))) {
-            let OfSizes { logarithm, found, left } = self.of_members((members, size), k, against)?;
+            let sizes = sized(members, size);
+            let mut changes = self.of_sizes(&sizes)?;
+            changes.logarithm += against;
+            if let Some(any) = any_velocity.as_ref().filter(|_| *members == rates) {
+                let beside = self.beside_velocity(&sizes, &velocity, any)?;
+                changes = if beside.logarithm > changes.logarithm { beside } else { changes };
+            }
+            let OfSizes { logarithm, found, factor } = changes;
+            let left = factor.inverse();
             let weight = each * logarithm.min(tuning::LARGEST_LOGARITHM).exp();
             all += weight;
             // Of a size that frames do not tell from none, a change is no other motion.
             probability += weight * members.clone().map(|i| 1.0 - left[(i, i)]).fold(0.0, f64::max);
             apart += found * found.transpose() * weight;
-            let is_among = |i: usize| members.contains(&i);
-            beside += CentredMatrix::from_fn(|i, j| {
-                if is_among(i) && is_among(j) { weight * size * size * left[(i, j)] } else { 0.0 }
-            });
+            beside += left.component_mul(&(sizes * sizes.transpose())) * weight;
         }
         Some(Weighed { probability: probability / all, apart: apart / all, beside: beside / all })
     }

@@ -66,6 +66,9 @@ impl Track {
     /// What an error of the whole outline, of a size in image lengths and of its own in every frame, makes of pose and motion: deviations
     /// about the centroid, normalised. Over the `span` that the motion is known from it may change by as much as it is.
     pub(crate) fn systematic(&self, size: f64, span: f64) -> [CentredDeviations; 2] {
+        if size <= 0.0 {
+            return [CentredDeviations::zeros(); 2];
+        }
         let (model, k) = (self.belief.model, self.belief.parameter_count());
         let size = size / self.reference.radius;
         let cells = self.map.cells();
