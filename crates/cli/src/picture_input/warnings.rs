@@ -44,16 +44,18 @@ impl PictureInput {
 
     /// Which objects have other numbers after they have touched others, with the code.
     pub(crate) fn warning_of_contact(&self, purpose: Purpose) -> Option<(OriginWarning, String)> {
-        let after = self.traced.after_contact();
-        let each: Vec<String> = after.chunk_by(|a, b| a.name == b.name).map(may_be).collect();
-        let (told, others) = each.split_at_checked(OBJECTS_TOLD).unwrap_or((&each, &[]));
+        let each: Vec<String> = self.traced.after_contact().chunk_by(|a, b| a.name == b.name).map(may_be).collect();
+        if each.is_empty() {
+            return None;
+        }
+        let (told, others) = each.split_at(each.len().min(OBJECTS_TOLD));
         let others = if others.is_empty() { String::new() } else { format!("; and {} more", others.len()) };
         let message = format!(
             "{}{others}: by itself or with what it touched for long; {}",
             told.join("; "),
             purpose.after_contact()
         );
-        (!after.is_empty()).then_some((OriginWarning::NewAfterContact, message))
+        Some((OriginWarning::NewAfterContact, message))
     }
 
     /// What the rows of a table of the pictures read so far should say, beyond what was known before the first.

@@ -21,7 +21,6 @@ const REASONS_TOLD: usize = 10;
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct PicturesLeftOut {
-    count: u64,
     lines: Vec<Line>,
     /// Those of reasons beyond the first ones.
     others: FrameRanges,
@@ -43,7 +42,6 @@ impl PicturesLeftOut {
     /// Adds the picture of a number that is not less than those before it, by the name of its file, with its folders. The reason is without the name
     /// and the number.
     pub fn take(&mut self, frame: u64, file: &str, reason: &str) {
-        self.count += 1;
         let known = self.lines.iter().position(|line| line.file == file && line.reason == reason);
         let line = match known {
             None if self.lines.len() == REASONS_TOLD => {
@@ -65,15 +63,16 @@ impl PicturesLeftOut {
     /// How many there are.
     #[must_use]
     pub fn count(&self) -> u64 {
-        self.count
+        self.lines.iter().map(|line| line.count).sum::<u64>() + self.other_count
     }
 
     /// Writes the list, if there are any. A file is named once, by the last part of its name.
     pub(super) fn write(&self, body: &mut String) {
-        if self.count == 0 {
+        let count = self.count();
+        if count == 0 {
             return;
         }
-        let _ = writeln!(body, "<h2>Pictures without an outline: {}</h2>\n<ul>", self.count);
+        let _ = writeln!(body, "<h2>Pictures without an outline: {count}</h2>\n<ul>");
         let mut last_file = None;
         for Line { file, reason, frames, count } in &self.lines {
             body.push_str("<li>");
