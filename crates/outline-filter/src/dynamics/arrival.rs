@@ -35,13 +35,18 @@ impl<const N: usize> Arrival<N> {
     ) -> (f64, Option<CentredVector>) {
         let innovation = self.state.update(measurement);
         let own = innovation.map_or(f64::NEG_INFINITY, |innovation| innovation.log_likelihood);
+        let score = innovation.map(|innovation| innovation.standardised);
+        // Where one part is all, the other may be so much more probable that no number says it.
+        if self.share == 1.0 {
+            return (own, score);
+        }
         let largest = own.max(of_others);
-        if !largest.is_finite() {
+        if self.share == 0.0 || !largest.is_finite() {
             return (of_others, score_of_others);
         }
         let [stayed, came] = [(1.0 - self.share) * (of_others - largest).exp(), self.share * (own - largest).exp()];
         self.share = came / (stayed + came);
-        let score = if came > stayed { innovation.map(|innovation| innovation.standardised) } else { score_of_others };
+        let score = if came > stayed { score } else { score_of_others };
         (largest + (stayed + came).ln(), score)
     }
 }
@@ -129,6 +134,24 @@ mod tests {
         let alone = of_variance(1e6).update(&measurement).expect("regular").log_likelihood;
         assert!((logarithm - alone - 1e-4_f64.ln()).abs() < 1e-6 && share > 0.999_999, "{logarithm} {alone} {share}");
         assert!(of_blended > logarithm + 5.0, "{of_blended} {logarithm}");
+    }
+
+    #[test]
+    fn where_all_have_come_or_none_the_others_count_for_nothing_however_improbable_those_are() {
+        let far = measured_at(2000.0);
+        for share in [0.0, 1.0] {
+            let (mut stayed, mut arrival) = (of_variance(0.01), Arrival { number: 0, share, state: of_variance(0.01) });
+            let improbable = stayed.update(&far).expect("regular").log_likelihood;
+            let likely = (0.0, None);
+            let (logarithm, _) = if share == 1.0 {
+                arrival.update(&far, likely)
+            } else {
+                arrival.update(&measured_at(0.0), (improbable, None))
+            };
+            assert!((logarithm - improbable).abs() < 1e-9 && arrival.share == share, "{share}: {logarithm}");
+            arrival.blend_into(&mut stayed);
+            assert!(stayed.mean.iter().chain(&stayed.covariance).all(|number| number.is_finite()));
+        }
     }
 
     #[test]
