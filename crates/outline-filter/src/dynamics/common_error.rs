@@ -1,6 +1,6 @@
 //! What the measured poses of all frames have in common.
-use freeform_riccati::{MAX_PARAMETERS, MotionModel};
-use nalgebra::{Matrix2, Matrix3, SMatrix, SVector};
+use freeform_riccati::{MAX_PARAMETERS, MotionModel, map_point};
+use nalgebra::{Matrix2, Matrix3, Point2, SMatrix, SVector};
 
 use crate::prediction::{PoseMatrix, moved_covariance};
 
@@ -17,12 +17,34 @@ use freeform_estimate::StateFormat;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct CommonError {
     model: MotionModel,
-    /// About the centroid, when the hypotheses began.
-    covariance: CentredMatrix,
-    /// The pose then, with the centroid for origin.
-    local: Matrix3<f64>,
+    /// When the hypotheses began, or later where it was larger.
+    largest: ErrorInPose,
+    /// As the outline is known now.
+    now: ErrorInPose,
     /// Motion of the body frame by which the outline as a whole has moved since then.
     shift: SVector<f64, MAX_PARAMETERS>,
+}
+
+/// An error of the body frame, as one of a pose.
+#[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct ErrorInPose {
+    /// About the centroid.
+    covariance: CentredMatrix,
+    /// The pose, with the centroid for origin.
+    local: Matrix3<f64>,
+}
+
+impl ErrorInPose {
+    /// Its covariance about the centroid in another pose.
+    fn covariance_in(&self, pose: &CentredPose, model: MotionModel) -> Option<CentredMatrix> {
+        let map = pose.local(model) * self.local.try_inverse()?;
+        let (change, k) = (model.adjoint(&map, &map.try_inverse()?), model.parameter_count());
+        let order = centred_order(model);
+        let change = CentredMatrix::from_fn(|i, j| if i < k && j < k { change[order[i]][order[j]] } else { 0.0 });
+        let turned = change * self.covariance * change.transpose();
+        turned.iter().all(|entry| entry.is_finite()).then_some(turned)
+    }
 }
 
 impl CommonError {
@@ -37,21 +59,12 @@ impl CommonError {
         let k = model.parameter_count();
         let added = |i: usize, j: usize| covariance[(i, j)] - given_outline[(i, j)];
         let covariance = CentredMatrix::from_fn(|i, j| if i < k && j < k { added(i, j) } else { 0.0 });
-        Self { model, covariance, local: reference.local(model), shift: SVector::zeros() }
+        let error = ErrorInPose { covariance, local: reference.local(model) };
+        Self { model, largest: error, now: error, shift: SVector::zeros() }
     }
 
-    /// Its covariance about the centroid in a pose.
-    pub(super) fn covariance_in(&self, pose: &CentredPose) -> Option<CentredMatrix> {
-        let map = pose.local(self.model) * self.local.try_inverse()?;
-        let (change, k) = (self.model.adjoint(&map, &map.try_inverse()?), self.model.parameter_count());
-        let order = centred_order(self.model);
-        let change = CentredMatrix::from_fn(|i, j| if i < k && j < k { change[order[i]][order[j]] } else { 0.0 });
-        let turned = change * self.covariance * change.transpose();
-        turned.iter().all(|entry| entry.is_finite()).then_some(turned)
-    }
-
-    /// Adds it to the covariance of what is measured with a probability, at these rates of the motion. The centroid, too, is known no better
-    /// than this, and what accelerates does so in the centroid: at a point aside, the rates move it besides.
+    /// Adds it, as the outline is known now, to the covariance of what is measured with a probability, at these rates of the motion. The centroid, too, is
+    /// known no better than this, and what accelerates does so in the centroid: at a point aside, the rates move it besides.
     pub(super) fn add_to<const N: usize>(
         &self,
         covariance: &mut SMatrix<f64, N, N>,
@@ -59,7 +72,7 @@ impl CommonError {
         (measured, accelerated): (f64, f64),
         rates: &Matrix2<f64>,
     ) -> Option<()> {
-        let (common, k) = (self.covariance_in(pose)?, self.model.parameter_count());
+        let (common, k) = (self.now.covariance_in(pose, self.model)?, self.model.parameter_count());
         let mut of_pose = covariance.fixed_view_mut::<LARGEST, LARGEST>(0, 0);
         of_pose += common * measured;
         let of_centroid = rates * common.fixed_view::<2, 2>(k - 2, k - 2) * rates.transpose();
@@ -68,12 +81,31 @@ impl CommonError {
         Some(())
     }
 
-    /// Takes the covariance of another in its place, of the same poses and now, where that is the larger one.
+    /// Takes the covariance of another for that of now, of the same poses, and for the largest, where it is larger.
     pub(super) fn renew(&mut self, now: &Self, pose: &CentredPose) {
-        let is_larger = self.covariance_in(pose).is_some_and(|before| now.covariance.trace() > before.trace());
-        if is_larger {
-            *self = Self { shift: self.shift, ..*now };
+        let before = self.largest.covariance_in(pose, self.model);
+        if before.is_some_and(|before| now.now.covariance.trace() > before.trace()) {
+            self.largest = now.now;
         }
+        self.now = now.now;
+    }
+
+    /// What it was more than it is now, as the covariance of an error of a pose about the origin: of where the body frame lies beside the outline as it is
+    /// known now.
+    pub(super) fn beyond_now(&self, pose: &CentredPose) -> Option<PoseMatrix> {
+        let (model, k) = (self.model, self.model.parameter_count());
+        let beyond = self.largest.covariance_in(pose, model)? - self.now.covariance_in(pose, model)?;
+        let beyond = PoseMatrix::from_fn(|i, j| if i < k && j < k { beyond[(i, j)] } else { 0.0 });
+        let axes = (0.5 * (beyond + beyond.transpose())).symmetric_eigen();
+        let positive = PoseMatrix::from_diagonal(&axes.eigenvalues.map(|value| value.max(0.0)));
+        let change = pose.about_origin(model)? * axes.eigenvectors;
+        Some(change * positive * change.transpose())
+    }
+
+    /// Where a point of the body frame was before the outline moved.
+    pub(super) fn before(&self, point: &Point2<f64>) -> Point2<f64> {
+        let k = self.model.parameter_count();
+        map_point(&self.model.flow(&(-self.shift).as_slice()[..k], 1.0).into_inner(), point)
     }
 
     /// Adds a displacement of the whole outline in the body frame, which later poses are measured against.
@@ -98,7 +130,7 @@ impl CommonError {
     /// been moved by since the hypotheses began.
     pub(super) fn of_body_frame(&self, pose: &CentredPose) -> Option<PoseMatrix> {
         let (model, k) = (self.model, self.model.parameter_count());
-        let common = self.covariance_in(pose)?;
+        let common = self.largest.covariance_in(pose, model)?;
         let common = PoseMatrix::from_fn(|i, j| if i < k && j < k { common[(i, j)] } else { 0.0 });
         let change = pose.about_origin(model)?;
         let in_body = moved_covariance(model, &(change * common * change.transpose()), &pose.pose.try_inverse()?)?;
@@ -107,18 +139,16 @@ impl CommonError {
 
     #[cfg(feature = "serde")]
     pub(super) fn is_valid(&self, model: MotionModel) -> bool {
-        let numbers = || self.covariance.iter().chain(&self.local).chain(&self.shift);
-        let is_in_bounds = numbers().all(|entry| entry.abs() <= StateFormat::LARGEST_NUMBER);
-        self.model == model && is_in_bounds && self.local.try_inverse().is_some()
+        let errors = || [&self.largest, &self.now].into_iter();
+        let numbers = errors().flat_map(|error| error.covariance.iter().chain(&error.local)).chain(&self.shift);
+        let is_in_bounds = numbers.into_iter().all(|entry| entry.abs() <= StateFormat::LARGEST_NUMBER);
+        self.model == model && is_in_bounds && errors().all(|error| error.local.try_inverse().is_some())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use freeform_riccati::map_point;
-    use nalgebra::Point2;
-
     fn reference() -> CentredPose {
         CentredPose { pose: Matrix3::identity(), centroid: Point2::new(0.3, -0.2) }
     }
@@ -143,7 +173,7 @@ mod tests {
     #[test]
     fn after_two_frames_it_is_the_error_of_the_first() {
         let expected = of_two_frames()[1].fixed_view::<3, 3>(0, 0).into_owned();
-        assert!((common_error().covariance.fixed_view::<3, 3>(0, 0) - expected).amax() < 1e-15);
+        assert!((common_error().now.covariance.fixed_view::<3, 3>(0, 0) - expected).amax() < 1e-15);
     }
 
     #[test]
@@ -154,7 +184,7 @@ mod tests {
         assert!((here - there).amax() < 1e-14, "{here} {there}");
         // There it was the identity that the hypotheses began in.
         let from = reference().about_origin(MotionModel::Rigid).expect("a pose").fixed_view::<3, 3>(0, 0).into_owned();
-        let expected = from * common_error().covariance.fixed_view::<3, 3>(0, 0) * from.transpose();
+        let expected = from * common_error().now.covariance.fixed_view::<3, 3>(0, 0) * from.transpose();
         assert!((here.fixed_view::<3, 3>(0, 0) - expected).amax() < 1e-14);
     }
 
@@ -166,16 +196,34 @@ mod tests {
             let mut common = CommonError { shift, ..common_error() };
             let now = [covariance, given_outline].map(|covariance| covariance * times);
             common.renew(&CommonError::of_outline(MotionModel::Rigid, &now[0], &now[1], &reference()), &reference());
-            let expected = common_error().covariance * if kept { 1.0 } else { times };
-            assert!((common.covariance - expected).amax() < 1e-15 && common.shift == shift, "{times}");
+            let expected = common_error().largest.covariance * if kept { 1.0 } else { times };
+            assert!((common.largest.covariance - expected).amax() < 1e-15 && common.shift == shift, "{times}");
         }
+    }
+
+    #[test]
+    fn what_the_outline_is_known_better_by_than_at_first_is_left_with_the_body_frame() {
+        let [covariance, given_outline] = of_two_frames();
+        let mut common = common_error();
+        assert!(common.beyond_now(&reference()).expect("a pose").amax() < 1e-15);
+        let now = [covariance, given_outline].map(|covariance| covariance * 0.25);
+        common.renew(&CommonError::of_outline(MotionModel::Rigid, &now[0], &now[1], &reference()), &reference());
+        let change = reference().about_origin(MotionModel::Rigid).expect("a pose");
+        let expected = change * (common.largest.covariance * 0.75) * change.transpose();
+        let beyond = common.beyond_now(&reference()).expect("a pose");
+        assert!((beyond - expected).amax() < 1e-14, "{beyond} {expected}");
+        // Nowhere less than none, where some of it is larger now and some smaller.
+        common.now.covariance[(0, 0)] = 2.0 * common.largest.covariance[(0, 0)];
+        let beyond = common.beyond_now(&reference()).expect("a pose");
+        assert!(beyond.symmetric_eigenvalues().min() > -1e-14 && beyond.amax() > 1e-3, "{beyond}");
     }
 
     #[test]
     fn it_goes_along_with_the_object() {
         let quarter = MotionModel::Rigid.flow(&[-std::f64::consts::FRAC_PI_2, 3.0, 1.0], 1.0).into_inner();
         let turned = CentredPose { pose: quarter, ..reference() };
-        let [here, there] = [reference(), turned].map(|pose| common_error().covariance_in(&pose).expect("a pose"));
+        let [here, there] = [reference(), turned]
+            .map(|pose| common_error().now.covariance_in(&pose, MotionModel::Rigid).expect("a pose"));
         assert!((here[(0, 0)] - there[(0, 0)]).abs() < 1e-15);
         assert!((here[(1, 1)] - there[(2, 2)]).abs() < 1e-15 && (here[(2, 2)] - there[(1, 1)]).abs() < 1e-15);
     }

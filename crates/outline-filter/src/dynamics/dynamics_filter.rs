@@ -98,6 +98,16 @@ impl DynamicsFilter {
         of_any_size!(self, hypotheses => hypotheses.common_error())
     }
 
+    /// The covariance of where the body frame lies beside the outline as it is known now, as an error that all poses have in common.
+    pub(crate) fn error_beyond_outline(&self) -> Option<PoseMatrix> {
+        of_any_size!(self, hypotheses => hypotheses.error_beyond_outline())
+    }
+
+    /// The centroid, in the body frame that poses are counted from.
+    pub(crate) fn centroid(&self) -> Point2<f64> {
+        of_any_size!(self, hypotheses => hypotheses.centroid())
+    }
+
     /// The pose in which the outline as it is now lies where a pose of these hypotheses has it.
     pub(crate) fn of_outline_now(&self, pose: &Matrix3<f64>) -> Matrix3<f64> {
         of_any_size!(self, hypotheses => hypotheses.of_outline_now(pose))

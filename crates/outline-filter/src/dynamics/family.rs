@@ -2,11 +2,11 @@
 use std::sync::OnceLock;
 
 use freeform_riccati::MotionModel;
-use nalgebra::{DMatrix, DVector};
 
 use super::{
     family_fit::{Addition, Fit, FrameScatter, deviations},
     innovations::InnovationSeries,
+    possible_faults::moments_of_possible,
     to_and_fro::{ChangeOfShape, ToAndFro},
     unmodelled_estimate::UnmodelledEstimate,
     wrong_family::{Found, WrongFamily, left_out_by, name_of},
@@ -152,8 +152,7 @@ impl FamilyTests {
         }
     }
 
-    /// Adds what motions may be that are neither found nor ruled out: the frames say how probable they are and how large (R. E. Kass and A. E.
-    /// Raftery, Bayes factors, 1995).
+    /// Adds what motions may be that are neither found nor ruled out.
     fn add_possible(
         &self,
         moments: &mut UnmodelledMatrix,
@@ -161,28 +160,17 @@ impl FamilyTests {
         members: &[usize],
         dependence: &UnmodelledVector,
     ) {
-        let usual = self.usual_size(members[0]);
         let is_told = |i: &usize| self.information[(*i, *i)] > 0.0 || EDGES.contains(i);
-        let members: Vec<usize> = members.iter().copied().filter(is_told).collect();
-        let ratio = largest_of(dependence, &members);
-        let n = known.numbers.len();
-        let numbers: Vec<usize> = known.numbers.iter().chain(&members).copied().collect();
-        // In units of what is usual, in which the prior has a variance of 1.
-        let scale = usual * usual / ratio;
-        let precision = DMatrix::from_fn(numbers.len(), numbers.len(), |a, b| {
-            let prior = if a == b && a >= n { 1.0 } else { 0.0 };
-            self.information[(numbers[a], numbers[b])] * scale + prior
-        });
-        let score = DVector::from_fn(numbers.len(), |a, _| self.score[numbers[a]] * usual / ratio);
-        let Some(covariance) = precision.cholesky().map(|factor| factor.inverse()) else { return };
-        let sizes = &covariance * &score;
-        let covariance = covariance.view((n, n), (members.len(), members.len()));
-        let for_them = covariance.determinant().ln() + score.dot(&sizes) - known.squared / ratio;
-        let probability = 1.0 / (1.0 + tuning::ODDS_AGAINST * (-0.5 * for_them).exp());
-        for (a, i) in members.iter().enumerate() {
-            for (b, j) in members.iter().enumerate() {
-                let moment = covariance[(a, b)] + sizes[n + a] * sizes[n + b];
-                moments[(*i, *j)] += probability * usual * usual * moment;
+        let told: Vec<usize> = members.iter().copied().filter(is_told).collect();
+        let ratio = largest_of(dependence, &told);
+        let Some((information, score)) = known.left_for((&self.information, &self.score), &told) else { return };
+        // Rows are read before the next frame.
+        let most = if members == [READ_OUT] { 1.0 / tuning::USUAL_READ_OUT } else { f64::INFINITY };
+        let sizes = (self.usual_size(members[0]), most);
+        let Some(possible) = moments_of_possible(&(information / ratio), &(score / ratio), sizes) else { return };
+        for (a, i) in told.iter().enumerate() {
+            for (b, j) in told.iter().enumerate() {
+                moments[(*i, *j)] += possible[(a, b)];
             }
         }
     }
@@ -370,8 +358,9 @@ mod tests {
             }
             tests.estimate(RIGID, 0.0).moments[(6, 6)]
         };
-        // At a reach of two radii a lens has a quarter of the usual error, one time in ten.
-        let beforehand = 0.1 * (tuning::USUAL_ERROR / 4.0).powi(2);
+        // At a reach of two radii a lens has a quarter of the usual error, one time in ten, and larger ones more rarely.
+        let larger = tuning::SIZES.iter().map(|(times, share)| share * times * times).sum::<f64>();
+        let beforehand = 0.1 * larger * (tuning::USUAL_ERROR / 4.0).powi(2);
         let unknown = second_moment(10, 10.0);
         assert!((0.9..1.1).contains(&(unknown / beforehand)), "{unknown} {beforehand}");
         let [many, few] = [1000, 10].map(|frames| second_moment(frames, 1e-3));

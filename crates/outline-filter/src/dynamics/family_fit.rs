@@ -50,6 +50,25 @@ impl Fit {
         self.numbers.iter().position(|n| *n == number)
     }
 
+    /// What information and score say of some motions with these estimated along; `None` where numbers do not allow it.
+    pub(super) fn left_for(
+        &self,
+        (information, score): (&UnmodelledMatrix, &UnmodelledVector),
+        members: &[usize],
+    ) -> Option<(DMatrix<f64>, DVector<f64>)> {
+        let of = |rows: &[usize], columns: &[usize]| {
+            DMatrix::from_fn(rows.len(), columns.len(), |a, b| information[(rows[a], columns[b])])
+        };
+        let of_score = |rows: &[usize]| DVector::from_fn(rows.len(), |a, _| score[rows[a]]);
+        let (own, across) = (of(members, members), of(&self.numbers, members));
+        if self.numbers.is_empty() {
+            return Some((own, of_score(members)));
+        }
+        let explained = of(&self.numbers, &self.numbers).cholesky()?.solve(&across);
+        let score = of_score(members) - explained.transpose() * of_score(&self.numbers);
+        Some((own - across.transpose() * explained, score))
+    }
+
     /// How far what is found of a lens is from one, by [`off_a_lens`]; `None` where not all of it is told.
     pub(super) fn off_a_lens(&self) -> Option<f64> {
         let places = OF_LENS.map(|number| self.place_of(number));

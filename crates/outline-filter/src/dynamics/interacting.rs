@@ -62,6 +62,8 @@ pub(crate) struct InteractingHypotheses<const N: usize> {
     pub(super) turn_is_of_path: bool,
     /// Whether wrong poses have moved the outline: others than a constant generator have led, or the motion has changed.
     pub(super) outline_has_moved: bool,
+    /// The centroid of the outline as it was known when it was placed last. That of the reference pose is the same, where the outline has not been moved.
+    pub(super) centroid_now: Point2<f64>,
 }
 
 impl<const N: usize> InteractingHypotheses<N> {
@@ -106,6 +108,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             series: InnovationSeries::default(),
             shaking: 1.0,
             outline_has_moved: false,
+            centroid_now: centroid,
             leads: setting != Dynamics::Auto && setting != Dynamics::Generator,
             turn_is_of_path: false,
         };
@@ -153,6 +156,15 @@ impl<const N: usize> InteractingHypotheses<N> {
         }
     }
 
+    /// The centroid of the body frame that poses are counted from, that of the outline as it is now given. While it stays it is the same in both.
+    fn placed_at(&mut self, centroid: &Point2<f64>) -> Point2<f64> {
+        if self.centroid_now == *centroid {
+            return self.reference.centroid;
+        }
+        self.centroid_now = *centroid;
+        if self.outline_has_moved { self.common.before(centroid) } else { *centroid }
+    }
+
     fn normalise(&mut self) {
         let sum: f64 = self.weights.iter().sum();
         if sum > 0.0 && sum.is_finite() {
@@ -171,15 +183,16 @@ impl<const N: usize> InteractingHypotheses<N> {
         }
         debug_assert!(self.arrivals.is_empty(), "the step before has not ended");
         self.reckon_with_change(seconds);
-        let moved = CentredPose { pose: self.reference.pose, centroid: pose.centroid };
+        let moved = CentredPose { pose: self.reference.pose, centroid: self.placed_at(&pose.centroid) };
         let (model, reference) = (self.model, self.reference);
         if moved.centroid != reference.centroid {
             self.all().for_each(|hypothesis| hypothesis.move_centroid(model, &reference, &moved));
         }
         self.reference = moved;
+        let to = CentredPose { pose: pose.pose, centroid: moved.centroid };
         let arrivals = self.leads.then_some(&mut self.arrivals);
         mix(&mut self.hypotheses, &mut self.weights, self.model, (&self.pose_variance, seconds), arrivals);
-        let step = Step::new((self.model, seconds), [&self.reference, pose], &self.pose_variance);
+        let step = Step::new((self.model, seconds), [&self.reference, &to], &self.pose_variance);
         let possible = step.is_some_and(|step| {
             let fails = |change: &mut SteadyChange<N>| change.hypotheses().iter_mut().any(|h| !h.predict(&step));
             if self.steady_change.as_mut().is_some_and(fails) {
@@ -188,7 +201,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             let arrived = self.arrivals.iter_mut().map(|arrival| &mut arrival.state);
             self.hypotheses.iter_mut().chain(arrived).all(|hypothesis| hypothesis.predict(&step))
         });
-        self.reference = *pose;
+        self.reference = to;
         if !self.turn_is_of_path {
             self.hold(null);
         }
@@ -334,6 +347,16 @@ impl<const N: usize> InteractingHypotheses<N> {
         self.common.of_body_frame(&self.reference)
     }
 
+    /// The covariance of where the body frame lies beside the outline as it is known now, as an error that all poses have in common.
+    pub(crate) fn error_beyond_outline(&self) -> Option<PoseMatrix> {
+        self.common.beyond_now(&self.reference)
+    }
+
+    /// The centroid, in the body frame that poses are counted from.
+    pub(crate) fn centroid(&self) -> Point2<f64> {
+        self.reference.centroid
+    }
+
     /// The pose in which the outline as it is now lies where a pose of these hypotheses has it.
     pub(crate) fn of_outline_now(&self, pose: &Matrix3<f64>) -> Matrix3<f64> {
         self.common.of_outline_now(pose)
@@ -377,6 +400,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             && beyond.iter().all(|weight| *weight == 0.0)
             && is_finite(self.reference.pose.as_slice())
             && is_finite(self.reference.centroid.coords.as_slice())
+            && is_finite(self.centroid_now.coords.as_slice())
             && self.pose_variance.iter().all(|variance| variance.is_finite() && *variance > 0.0)
             && self.steady_change.as_ref().is_none_or(SteadyChange::is_valid)
             && self.common.is_valid(model)

@@ -23,6 +23,7 @@ mod interacting;
 mod mixing;
 mod null_motions;
 mod perspective;
+mod possible_faults;
 mod probabilities;
 mod setting;
 mod steady_change;

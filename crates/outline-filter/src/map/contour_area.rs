@@ -19,6 +19,16 @@ pub(super) struct ContourArea {
 }
 
 impl ContourArea {
+    /// Adds the triangle between the origin and the chord from one place to the next.
+    fn add_chord(&mut self, from: &Point2<f64>, to: &Point2<f64>) {
+        let (p, q) = (from - self.origin, to - self.origin);
+        let twice = p.perp(&q);
+        self.area += twice;
+        self.moment += twice * (p + q);
+        self.second += twice * (p * p.transpose() + q * q.transpose() + (p + q) * (p + q).transpose());
+        self.cells += 1;
+    }
+
     fn centroid(&self) -> Option<Point2<f64>> {
         (self.area != 0.0).then(|| self.origin + self.moment / (3.0 * self.area))
     }
@@ -30,36 +40,46 @@ impl ContourArea {
     }
 }
 
-/// The largest of some contours.
-fn boundary(contours: &[ContourArea]) -> Option<&ContourArea> {
-    contours.iter().max_by(|a, b| a.area.abs().total_cmp(&b.area.abs()))
+/// The one that encloses more, the second where both do.
+fn larger(a: ContourArea, b: ContourArea) -> ContourArea {
+    if a.area.abs() > b.area.abs() { a } else { b }
 }
 
 impl OutlineMap {
-    /// The contours that the cells make, if all of them are closed; none where there are no cells.
-    pub(super) fn closed_contours(&self) -> Vec<ContourArea> {
-        let (mut contours, mut cells, mut start) = (Vec::new(), 0, 0);
+    /// Goes through the contours that the cells make; whether all of them are closed. Cells have offsets along their normals, none where these are fewer.
+    fn for_each_contour(&self, offsets: &[f64], mut each: impl FnMut(ContourArea)) -> bool {
+        let (mut cells, mut start) = (0, 0);
         while cells < self.cells.len() && start < self.cells.len() {
-            let Some(contour) = self.contour_from(start) else { return Vec::new() };
+            let Some(contour) = self.contour_from(start, offsets) else { return false };
             // Each contour counts once, from the first of its cells.
             if contour.least == start {
                 cells += contour.cells;
-                contours.push(contour);
+                each(contour);
             }
             start += 1;
         }
-        contours
+        true
     }
 
-    /// Centroid of the area within the polygon of the cells, if they are one closed contour; of several, within the largest, which is the
-    /// boundary of the body.
-    pub(super) fn area_centroid(contours: &[ContourArea]) -> Option<Point2<f64>> {
-        boundary(contours)?.centroid()
+    /// The contours that the cells make, if all of them are closed; none where there are no cells.
+    pub(super) fn closed_contours(&self) -> Vec<ContourArea> {
+        let mut contours = Vec::new();
+        if self.for_each_contour(&[], |contour| contours.push(contour)) { contours } else { Vec::new() }
+    }
+
+    /// Centroid of the area within the polygon of the outline at its offsets from the cells, if it is one closed contour; of several, within the largest,
+    /// which is the boundary of the body.
+    pub(super) fn area_centroid(&self, offsets: &[f64]) -> Option<Point2<f64>> {
+        let mut largest: Option<ContourArea> = None;
+        let are_closed = self.for_each_contour(offsets, |contour| {
+            largest = Some(largest.map_or(contour, |before| larger(before, contour)));
+        });
+        largest.filter(|_| are_closed)?.centroid()
     }
 
     /// Covariance of the places in that area. An affine map of the outline maps it as well, which is not true of places along the outline.
     pub(super) fn area_covariance(contours: &[ContourArea]) -> Option<Matrix2<f64>> {
-        boundary(contours)?.covariance()
+        contours.iter().copied().reduce(larger)?.covariance()
     }
 
     /// Mean square of the lever arms of a turn that the places of closed contours beside each other have; squares of the RMS radius. Errors of
@@ -83,27 +103,31 @@ impl OutlineMap {
     }
 
     /// The closed contour that a cell is of; `None` where it is of an open one.
-    fn contour_from(&self, start: usize) -> Option<ContourArea> {
+    fn contour_from(&self, start: usize, offsets: &[f64]) -> Option<ContourArea> {
         let origin = self.cells.get(start)?.centre;
+        let mut contour = ContourArea {
+            origin,
+            area: 0.0,
+            moment: Vector2::zeros(),
+            second: Matrix2::zeros(),
+            cells: 0,
+            least: start,
+        };
         let (mut last, mut here) = (start, self.cells[start].neighbours[1]);
-        let (mut area, mut moment, mut second) = (0.0, Vector2::zeros(), Matrix2::zeros());
-        let (mut cells, mut least) = (1, start);
-        while here != start {
+        loop {
+            contour.add_chord(&self.outline_at(last, offsets), &self.outline_at(here, offsets));
+            contour.least = contour.least.min(here);
+            if here == start {
+                return (contour.cells > 1).then_some(contour);
+            }
             // Links may point either way.
             let [a, b] = self.cells[here].neighbours;
             let next = if a == last { b } else { a };
-            if cells == self.cells.len() || a == here || b == here {
+            if contour.cells == self.cells.len() || a == here || b == here {
                 return None;
             }
-            let (p, q) = (self.cells[last].centre - origin, self.cells[here].centre - origin);
-            let twice = p.perp(&q);
-            area += twice;
-            moment += twice * (p + q);
-            second += twice * (p * p.transpose() + q * q.transpose() + (p + q) * (p + q).transpose());
-            (cells, least) = (cells + 1, least.min(here));
             (last, here) = (here, next);
         }
-        (cells > 1).then_some(ContourArea { origin, area, moment, second, cells, least })
     }
 }
 
@@ -139,5 +163,16 @@ mod tests {
             let (found, expected) = (covariance_of(&map), map * plain * map.transpose());
             assert!((found - expected).amax() < 0.003 * expected.amax(), "{found} {expected}");
         }
+    }
+
+    #[test]
+    fn the_centroid_is_that_of_the_outline_at_its_offsets_from_the_cells() {
+        let outline = Outline::closed(all_around(400, |t| polar(1.0, t))).expect("an outline");
+        let track = Track::begin(MotionModel::Rigid, &outline, 0.0, &mut Frame::default()).expect("a track");
+        let shift = Vector2::new(0.03, -0.02);
+        let offsets: Vec<f64> = track.map().cells().iter().map(|cell| cell.normal.dot(&shift)).collect();
+        let centroid = |offsets: &[f64]| track.map().area_centroid(offsets).expect("a closed contour");
+        let moved = centroid(&offsets) - centroid(&[]);
+        assert!((moved - shift).norm() < 1e-3 * shift.norm(), "{moved}");
     }
 }

@@ -89,7 +89,7 @@ impl OutlineMap {
     }
 
     /// After a frame that has not shown the turn about the object's centroid: marks it as not observable.
-    pub(crate) fn hide_turn(&mut self, model: MotionModel) {
+    pub(crate) fn hide_turn(&mut self, model: MotionModel, offsets: &[f64]) {
         let space = &mut self.null_space;
         if !space.holds_turn(model) && space.frame.try_inverse().is_some() {
             space.turn = space.turn.after(TurnEvent::NotSeen);
@@ -110,7 +110,7 @@ impl OutlineMap {
             let Some(inverse) = frame.try_inverse() else { return };
             space.in_body.push(model.parameters_of(&(frame * space.unit_turn(model) * inverse)));
             if !is_alone {
-                self.place_centroid(model, &self.closed_contours());
+                self.place_centroid(model, offsets);
             }
         }
     }
@@ -147,12 +147,12 @@ impl OutlineMap {
     }
 
     /// Undoes [`hide_turn`](Self::hide_turn), so that it can be asked anew whether the turn is seen.
-    pub(crate) fn show_turn(&mut self, model: MotionModel) {
+    pub(crate) fn show_turn(&mut self, model: MotionModel, offsets: &[f64]) {
         let space = &mut self.null_space;
         if space.turn.is_hidden() && space.turn != TurnEvidence::Refuted {
             space.turn = space.turn.after(TurnEvent::AskedAnew);
             space.in_body.pop();
-            self.place_centroid(model, &self.closed_contours());
+            self.place_centroid(model, offsets);
         }
     }
 
@@ -161,8 +161,13 @@ impl OutlineMap {
         self.null_space.holds_turn(model)
     }
 
+    /// Variance of the direction of the normals by the noise of the points that they come from, rad squared.
+    pub(crate) fn variance_of_normals(&self) -> f64 {
+        direction_variance(self.null_space.sigma / self.step, self.half_window)
+    }
+
     /// Finds the null directions from the lever arms of the cells about their mean; `sigma` is the deviation of the noise.
-    pub(crate) fn find_null_directions(&mut self, model: MotionModel, sigma: f64) {
+    pub(crate) fn find_null_directions(&mut self, model: MotionModel, sigma: f64, offsets: &[f64]) {
         let k = model.parameter_count();
         let count = self.cells.len() as f64;
         let contours = self.closed_contours();
@@ -176,12 +181,11 @@ impl OutlineMap {
         // Where the outline may be stretched, light that moves a hole looks like a stretch as well as like a turn.
         let places_show_turn = centring.stretch().is_none()
             && of_places >= tuning::SHOWN_BY_PLACES.max(tuning::PLACES_PER_NOISE * noise * noise);
-        let of_normals = direction_variance(sigma / self.step, self.half_window);
-        let needed = tuning::HARDLY_SHOWN.min(tuning::LEAST_LEVER_PER_NOISE * of_normals);
+        self.null_space.sigma = sigma;
+        let needed = tuning::HARDLY_SHOWN.min(tuning::LEAST_LEVER_PER_NOISE * self.variance_of_normals());
         let to_body = centring.to_body();
         self.levers = Some(all);
         let space = &mut self.null_space;
-        space.sigma = sigma;
         space.in_body.clear();
         (space.weakest_turn, space.turn_without_most, space.turn_of_rest) = (f64::INFINITY, f64::INFINITY, None);
         let mut unseen: Vec<ParameterVector> = Vec::new();
@@ -221,9 +225,9 @@ impl OutlineMap {
         }
         (space.frame, space.stretch) = (to_body, centring.stretch());
         space.turn = space.turn.after(TurnEvent::AskedAnew);
-        self.place_centroid(model, &contours);
+        self.place_centroid(model, offsets);
         if self.null_space.turn == TurnEvidence::Refuted {
-            self.hide_turn(model);
+            self.hide_turn(model, offsets);
         }
     }
 

@@ -76,7 +76,7 @@ impl MotionFilter {
     }
 
     /// Whether the motion changes, as is seen or as the settings say.
-    fn may_change(&self) -> bool {
+    pub(super) fn may_change(&self) -> bool {
         self.history.is_changing() || !self.settings.process_noise.is_none()
     }
 

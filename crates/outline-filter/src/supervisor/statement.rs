@@ -10,7 +10,11 @@ use super::{
 };
 use crate::{
     belief::StateMatrix,
-    dynamics::{CentredDeviations, Dynamics, Purpose, Summary, UnmodelledEstimate, WrongFamily, centred_velocity},
+    dynamics::{
+        CentredDeviations, Dynamics, DynamicsFilter, Purpose, Summary, UnmodelledEstimate, WrongFamily,
+        centred_velocity,
+    },
+    prediction::PoseMatrix,
     track::{Track, TurnOfPose, TurnTold, of_pose, of_pose_alone},
     tuning::statement as tuning,
 };
@@ -53,7 +57,10 @@ impl MotionFilter {
         factors = factors.map(|factor| factor.max(widening));
         random = random.widened(model, &centroid, &factors, [&none, &none])?;
         let mut body_frame = None;
-        if let Some(kept) = track.kept_error(&random.pose) {
+        let beyond =
+            self.history.dynamics.as_ref().map_or(Some(PoseMatrix::zeros()), DynamicsFilter::error_beyond_outline);
+        if let Some((kept, beyond)) = track.kept_error(&random.pose).zip(beyond) {
+            let kept = kept + beyond;
             // It was told by frames that depended on each other as well.
             let kept = Summary { covariance: of_pose_alone(&kept), ..random };
             let widened = kept.widened(model, &centroid, &factors, [&none, &none]);
@@ -227,7 +234,9 @@ impl MotionFilter {
         observable.iter_mut().zip(estimate.parameters()).for_each(|(seen, p)| *seen = p.value.is_some());
         let is_ambiguous = self.turn_hypotheses.make_pose_doubtful() && self.ambiguity().is_some();
         let turn = if is_ambiguous { TurnOfPose::Ambiguous } else { TurnOfPose::AsTheOutlineShows };
-        self.track.as_ref()?.state_of((all, body_frame), self.clock.of_track, observable, turn)
+        let track = self.track.as_ref()?;
+        let centroid = self.history.dynamics.as_ref().map_or(track.map().centroid(), DynamicsFilter::centroid);
+        track.state_of((all, body_frame, centroid), self.clock.of_track, observable, turn)
     }
 
     /// Velocity of the object's centroid, that of the area within its known outline (the centre of its cells where that is not one closed

@@ -209,7 +209,7 @@ impl Track {
     /// that `observable` says nothing is known of.
     pub(crate) fn state_of(
         &self,
-        (summary, body_frame): (&Summary, &PoseMatrix),
+        (summary, body_frame, centroid): (&Summary, &PoseMatrix, Point2<f64>),
         time: f64,
         observable: [bool; MAX_PARAMETERS],
         turn: TurnOfPose,
@@ -239,7 +239,7 @@ impl Track {
             covariance_given_outline: in_seconds(given_outline),
             observable,
             hidden: self.hidden_parameters(turn),
-            centroid: self.map.centroid(),
+            centroid,
         };
         Some(state.into())
     }

@@ -1,10 +1,22 @@
 //! The velocity of an object's middle, and what an outline does not show of it.
+use std::sync::Arc;
+
 use freeform_estimate::{MotionState, PointVelocity};
 use freeform_riccati::ParameterKind;
 
 use super::{Track, estimate::TurnOfPose};
+use crate::tuning::map::CENTROID_RENEWED;
 
 impl Track {
+    /// Places the centroid by the outline as it is known now, each time that twice as many frames have told it: cells were cut along the points of
+    /// few frames, and smoothed. Where the outline does not show a motion, the centroid stays, as it is where that motion leaves it.
+    pub(super) fn renew_centroid(&mut self) {
+        let is_time = self.frames.is_power_of_two() && CENTROID_RENEWED.contains(&self.frames);
+        if is_time && self.null_directions().is_empty() {
+            Arc::make_mut(&mut self.map).place_centroid(self.belief.model, &self.belief.offsets);
+        }
+    }
+
     /// Velocity of the object's centroid in a state of this track; `None` where it is not worth stating. Whether the outline shows it
     /// [`hides_velocity`](Self::hides_velocity) says.
     pub(crate) fn velocity_of_centroid(&self, state: &MotionState) -> Option<PointVelocity> {

@@ -166,6 +166,7 @@ impl Track {
             self.belief.memory.take_frame();
             doubt = self.doubt_of_agreement(measurement.agreement, weakest, frame.points.len());
             self.look_for_change_of_shape(frame);
+            self.renew_centroid();
             shift = self.common_shift(frame);
             self.learn_noise(frame, (noise.map(|noise| noise / radius), correlation), measurement.weight);
             if measurement.new_points >= tuning::FEWEST_NEW_POINTS && self.knows_place_of_new() {
@@ -360,14 +361,14 @@ impl Track {
     /// After a frame that has not shown the turn: marks it as not observable.
     pub(crate) fn hide_turn(&mut self) {
         if !self.turn_is_unseen() {
-            Arc::make_mut(&mut self.map).hide_turn(self.belief.model);
+            Arc::make_mut(&mut self.map).hide_turn(self.belief.model, &self.belief.offsets);
         }
     }
 
     /// Undoes [`hide_turn`](Self::hide_turn), so that it can be asked anew whether the turn is seen.
     pub(crate) fn show_turn(&mut self) {
         if self.turn_evidence().is_hidden() {
-            Arc::make_mut(&mut self.map).show_turn(self.belief.model);
+            Arc::make_mut(&mut self.map).show_turn(self.belief.model, &self.belief.offsets);
         }
     }
 

@@ -17,6 +17,7 @@ use crate::{
     map::{Cell, OutlineMap},
     measurement::Frame,
     prediction::ErrorTransition,
+    tuning::family as tuning,
     vectors::vectorised,
 };
 
@@ -113,7 +114,8 @@ impl Sensitivity {
             }
         }
         frame.values = left;
-        sums.score(measured)
+        let by_normals = tuning::LEFT_PER_NOISE * map.variance_of_normals();
+        sums.score(measured, by_normals.clamp(tuning::LEFT, tuning::MOST_LEFT))
     }
 
     /// Sums over the cells of a frame, and what is left of each of their displacements as far as the frame corrects it. The information on the

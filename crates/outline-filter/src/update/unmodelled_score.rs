@@ -108,8 +108,8 @@ impl<const K: usize, const S: usize> Sums<K, S> {
         left
     }
 
-    /// The pose eliminated.
-    pub(super) fn score(&self, pose: &PoseMeasurement) -> Option<UnmodelledScore> {
+    /// The pose eliminated. A motion that has no more than a share of its squared displacement left says nothing.
+    pub(super) fn score(&self, pose: &PoseMeasurement, share: f64) -> Option<UnmodelledScore> {
         let known = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::from_fn(|i, j| {
             if i < K && j < K { pose.information[(i, j)] } else { f64::from(u8::from(i == j)) }
         });
@@ -121,9 +121,8 @@ impl<const K: usize, const S: usize> Sums<K, S> {
             self.information[a.max(b)][a.min(b)] - with_pose.column(a).dot(&explained.column(b))
         });
         let mut score = UnmodelledVector::from(self.score) - explained.transpose() * pose.pulled;
-        // What has been taken in is known to some percent.
         for l in 0..UNMODELLED {
-            if information[(l, l)] > tuning::LEFT * self.whole[l] {
+            if information[(l, l)] > share * self.whole[l] {
                 continue;
             }
             information.row_mut(l).fill(0.0);

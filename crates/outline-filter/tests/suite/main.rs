@@ -13,6 +13,7 @@ mod filter_motion;
 mod filter_observability;
 mod filter_support;
 mod first_frames;
+mod flying_bodies;
 mod gaps;
 mod kept_errors;
 mod known_outline;

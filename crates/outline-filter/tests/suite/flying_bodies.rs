@@ -1,0 +1,135 @@
+//! Bodies that fly straight and spin: their centroid, its velocity, and their outline, of frames whose points are evenly spaced.
+use freeform_curve_fit::Outline;
+use freeform_outline_filter::MotionFilter;
+use freeform_riccati::{MotionModel, map_point};
+use nalgebra::{Point2, Rotation2, Vector2};
+use rand::{RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution as _, Normal};
+
+use crate::filter_support::filter;
+
+const FRAME_RATE: f64 = 30.0;
+const FRAMES: u32 = 60;
+
+/// A smooth body about the centroid of its area, of a radius of about 1, drawn finely.
+fn body(random: &mut ChaCha8Rng) -> Vec<Point2<f64>> {
+    let waves: Vec<[f64; 3]> = (2..=5)
+        .map(|times| [f64::from(times), 0.2 / f64::from(times), random.random_range(0.0..std::f64::consts::TAU)])
+        .collect();
+    let place = |i: u32| {
+        let t = std::f64::consts::TAU * f64::from(i) / 2000.0;
+        let radius = 1.0 + waves.iter().map(|[times, size, phase]| size * (times * t + phase).cos()).sum::<f64>();
+        Point2::new(radius * t.cos(), 0.8 * radius * t.sin())
+    };
+    let mut places: Vec<_> = (0..2000).map(place).collect();
+    let (mut area, mut moment) = (0.0, Vector2::zeros());
+    for (p, q) in places.iter().zip(places.iter().cycle().skip(1)) {
+        let twice = p.coords.perp(&q.coords);
+        area += twice;
+        moment += twice * (p.coords + q.coords) / 3.0;
+    }
+    places.iter_mut().for_each(|p| *p -= moment / area);
+    places
+}
+
+/// So many points of a closed line, evenly spaced from a place on it that is drawn.
+fn evenly(line: &[Point2<f64>], count: usize, random: &mut ChaCha8Rng) -> Vec<Point2<f64>> {
+    let mut along = vec![0.0];
+    for (p, q) in line.iter().zip(line.iter().cycle().skip(1)) {
+        along.push(along[along.len() - 1] + (q - p).norm());
+    }
+    let (length, part) = (along[line.len()], random.random_range(0.0..1.0));
+    let at = |i: usize| {
+        let s = (i as f64 + part) / count as f64 * length;
+        let before = along.partition_point(|known| *known <= s) - 1;
+        let share = (s - along[before]) / (along[before + 1] - along[before]);
+        line[before] + share * (line[(before + 1) % line.len()] - line[before])
+    };
+    (0..count).map(at).collect()
+}
+
+/// A body that flies straight, with a spin that is positive where it turns clockwise.
+struct Flight {
+    body: Vec<Point2<f64>>,
+    spin: f64,
+    velocity: Vector2<f64>,
+    points: usize,
+    noise: f64,
+}
+
+impl Flight {
+    fn new(seed: u64) -> (Self, ChaCha8Rng) {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let body = body(&mut random);
+        let side = if seed.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let spin = side * random.random_range(0.8..3.0);
+        let velocity = Vector2::new(random.random_range(-1.0..1.0), random.random_range(-1.0..1.0));
+        let (points, noise) = ([60, 100][seed as usize / 2 % 2], [0.002, 0.006][seed as usize / 4 % 2]);
+        (Self { body, spin, velocity, points, noise }, random)
+    }
+
+    fn outline(&self, frame: u32, random: &mut ChaCha8Rng) -> Outline {
+        let noise = Normal::new(0.0, self.noise).expect("a deviation");
+        let time = f64::from(frame) / FRAME_RATE;
+        let turn = Rotation2::new(-self.spin * time);
+        let mut points = evenly(&self.body, self.points, random);
+        for p in &mut points {
+            *p += Vector2::new(noise.sample(random), noise.sample(random));
+            *p = turn * *p + self.velocity * time;
+        }
+        Outline::closed(points).expect("an outline")
+    }
+
+    fn run(&self, random: &mut ChaCha8Rng) -> MotionFilter {
+        let mut run = filter(MotionModel::Rigid);
+        for frame in 0..FRAMES {
+            let outline = self.outline(frame, random);
+            run.step(f64::from(frame) / FRAME_RATE, &outline).expect("increasing times");
+        }
+        run
+    }
+
+    /// Deviation of the velocity of a line through all places, each known as well as the points of its frame tell it.
+    fn of_line(&self) -> f64 {
+        let of_place = self.noise * (2.0 / self.points as f64).sqrt();
+        let frames = f64::from(FRAMES);
+        of_place * FRAME_RATE * (12.0 / frames.powi(3)).sqrt()
+    }
+}
+
+#[test]
+fn the_velocity_of_a_body_that_flies_and_spins_is_that_of_the_centroid_of_its_area() {
+    let (mut squared, mut count, mut widths) = (0.0, 0, Vec::new());
+    for seed in 0..24 {
+        let (flight, mut random) = Flight::new(seed);
+        let run = flight.run(&mut random);
+        let Some(found) = run.velocity() else { continue };
+        let off = (found.velocity - flight.velocity).component_div(&found.standard_deviations());
+        assert!(off.amax() < 4.5, "seed {seed}: {found:?}, {off}");
+        squared += off.norm_squared();
+        count += 2;
+        widths.push(found.standard_deviations().x / flight.of_line());
+    }
+    assert!(count > 44, "{count}");
+    let spread = (squared / f64::from(count)).sqrt();
+    assert!((0.5..1.3).contains(&spread), "{spread}");
+    widths.sort_by(f64::total_cmp);
+    assert!(widths[widths.len() / 2] < 15.0, "{widths:?}");
+}
+
+#[test]
+fn the_outline_of_a_body_that_flies_and_spins_is_known_without_spikes_where_frames_show_different_points_of_it() {
+    for seed in 0..16 {
+        let (flight, mut random) = Flight::new(seed);
+        let run = flight.run(&mut random);
+        let known = run.known_outline().expect("an outline");
+        let time = f64::from(FRAMES - 1) / FRAME_RATE;
+        let back = Rotation2::new(flight.spin * time);
+        for p in known.pieces.iter().flat_map(|piece| &piece.points) {
+            let place = back * (map_point(known.pose.matrix(), p) - flight.velocity * time);
+            let distance = flight.body.iter().map(|q| (q - place).norm()).fold(f64::INFINITY, f64::min);
+            assert!(distance < 8.0 * flight.noise + 0.02, "seed {seed}: {distance}");
+        }
+    }
+}
