@@ -26,7 +26,7 @@ pub(super) struct CommonError {
 }
 
 /// An error of the body frame, as one of a pose.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct ErrorInPose {
     /// About the centroid.
@@ -93,6 +93,9 @@ impl CommonError {
     /// What it was more than it is now, as the covariance of an error of a pose about the origin: of where the body frame lies beside the outline as it is
     /// known now.
     pub(super) fn beyond_now(&self, pose: &CentredPose) -> Option<PoseMatrix> {
+        if self.largest == self.now {
+            return Some(PoseMatrix::zeros());
+        }
         let (model, k) = (self.model, self.model.parameter_count());
         let beyond = self.largest.covariance_in(pose, model)? - self.now.covariance_in(pose, model)?;
         let beyond = PoseMatrix::from_fn(|i, j| if i < k && j < k { beyond[(i, j)] } else { 0.0 });
