@@ -63,8 +63,8 @@ pub struct NormalisedState {
     pub motion: ParameterVector,
     /// Covariance of the pose error xi, `g = exp(xi) g_hat`, then the motion, counted from the body frame: 2 k by 2 k.
     pub covariance: DMatrix<f64>,
-    /// Covariance of where the body frame lies beside the first outline, as a pose error: k by k. Every pose has this error as well, in common; no motion has
-    /// it, nor does the velocity of the middle, which is where the outline is.
+    /// Covariance of where the body frame lies beside the outline as it is known at that time, as a pose error: k by k. Every pose has this error as
+    /// well, in common; no motion has it, nor does the velocity of the middle, which is where the outline is.
     pub body_frame: DMatrix<f64>,
     /// This covariance if the outline is known exactly.
     pub covariance_given_outline: DMatrix<f64>,

@@ -122,6 +122,9 @@ fn take_back(state: &mut MotionState, next: &MotionState, process_noise: &Proces
     state.pose = state.model.flow(&correction.as_slice()[..k], 1.0).into_inner() * pose;
     (0..k).for_each(|j| state.motion[j] = next.motion[j] + correction[k + j]);
     state.covariance = 0.5 * (&covariance + covariance.transpose());
+    // One error that all poses have in common: the last state says it, as what it knows of the outline is no part of it any more.
+    let carried = back.view((0, 0), (k, k));
+    state.body_frame = carried * &next.body_frame * carried.transpose();
     for j in 0..MAX_PARAMETERS {
         state.observable[j] |= next.observable[j];
     }

@@ -56,3 +56,17 @@ fn where_the_body_frame_lies_goes_along_with_the_body() {
     assert!((added("angle") - before).abs() < 1e-9, "{} {before}", added("angle"));
     assert_eq!(unknown.velocity_of_middle(), known.velocity_of_middle());
 }
+
+#[test]
+fn smoothed_poses_have_where_the_body_frame_lies_as_the_last_state_says_it() {
+    let noises = [ProcessNoise::default(), ProcessNoise { rates: 0.1, velocities: 0.1 }];
+    for noise in noises {
+        // What is known of the outline by the first state is no error of its body frame yet.
+        let (first, last) = (state(0.0), state(0.5).predicted(1.5, &noise));
+        let smoothed = freeform_estimate::smooth(&[first.clone(), last], &noise).expect("increasing times");
+        let angle = |state: &MotionState| state.pose_parameters()[0].standard_deviation;
+        assert!(angle(&first) < 0.011 && (0.49..0.52).contains(&angle(&smoothed[0])), "{}", angle(&smoothed[0]));
+        let [before, after] = [&first, &smoothed[0]].map(|state| state.velocity_of_middle().standard_deviations());
+        assert!((after - before).amax() < before.max(), "{after} {before}");
+    }
+}

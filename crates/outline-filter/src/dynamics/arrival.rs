@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn where_all_have_come_or_none_the_others_count_for_nothing_however_improbable_those_are() {
+    fn where_all_have_come_to_a_hypothesis_or_none_the_other_part_counts_for_nothing() {
         let far = measured_at(2000.0);
         for share in [0.0, 1.0] {
             let (mut stayed, mut arrival) = (of_variance(0.01), Arrival { number: 0, share, state: of_variance(0.01) });

@@ -19,7 +19,7 @@ pub(super) struct CommonError {
     model: MotionModel,
     /// When the hypotheses began, or later where it was larger.
     largest: ErrorInPose,
-    /// As the outline is known now.
+    /// As the outline was known in the last frame in which others than a constant generator led; before that, when the hypotheses began.
     now: ErrorInPose,
     /// Motion of the body frame by which the outline as a whole has moved since then.
     shift: SVector<f64, MAX_PARAMETERS>,
@@ -63,8 +63,8 @@ impl CommonError {
         Self { model, largest: error, now: error, shift: SVector::zeros() }
     }
 
-    /// Adds it, as the outline is known now, to the covariance of what is measured with a probability, at these rates of the motion. The centroid, too, is
-    /// known no better than this, and what accelerates does so in the centroid: at a point aside, the rates move it besides.
+    /// Adds it, as the outline is known now, to the covariance of what is measured with a probability, at these rates of the motion. The centroid,
+    /// too, is known no better than this, and what accelerates does so in the centroid: at a point aside, the rates move it besides.
     pub(super) fn add_to<const N: usize>(
         &self,
         covariance: &mut SMatrix<f64, N, N>,
@@ -90,8 +90,8 @@ impl CommonError {
         self.now = now.now;
     }
 
-    /// What it was more than it is now, as the covariance of an error of a pose about the origin: of where the body frame lies beside the outline as it is
-    /// known now.
+    /// The covariance of where the body frame lies beside the outline as it is known now, about the origin, as an error that all poses have: what the
+    /// error of the outline was at its largest, less what it is now.
     pub(super) fn beyond_now(&self, pose: &CentredPose) -> Option<PoseMatrix> {
         if self.largest == self.now {
             return Some(PoseMatrix::zeros());
@@ -129,8 +129,8 @@ impl CommonError {
         pose * self.model.flow(&(-self.shift).as_slice()[..k], 1.0).into_inner()
     }
 
-    /// As the covariance of an error of the body frame, of one that has the outline as it is now: what all poses have in common, and what the outline has
-    /// been moved by since the hypotheses began.
+    /// As the covariance of an error of the body frame, of one that has the outline as it is now: what all poses have in common, and what the outline
+    /// has been moved by since the hypotheses began.
     pub(super) fn of_body_frame(&self, pose: &CentredPose) -> Option<PoseMatrix> {
         let (model, k) = (self.model, self.model.parameter_count());
         let common = self.largest.covariance_in(pose, model)?;
@@ -239,6 +239,7 @@ mod tests {
         let pose = MotionModel::Rigid.flow(&[0.7, 0.2, 0.1], 1.0).into_inner();
         let point = Point2::new(0.4, 0.5);
         let moved = map_point(MotionModel::Rigid.flow(&shift, 1.0).matrix(), &point);
+        assert!((common.before(&moved) - point).norm() < 1e-15);
         assert!((map_point(&common.of_outline_now(&pose), &moved) - map_point(&pose, &point)).norm() < 1e-15);
         let error = common.shift_in(&pose);
         let counted = MotionModel::Rigid.flow(&error.as_slice()[..3], 1.0).into_inner() * common.of_outline_now(&pose);

@@ -87,8 +87,8 @@ impl DynamicsFilter {
         of_any_size!(self, hypotheses => hypotheses.add_shift(shift));
     }
 
-    /// Takes what poses have in common to be no less than what the outline adds to them now: by the covariance of what is believed, and of that if the
-    /// outline is known.
+    /// Takes what poses have in common to be no less than what the outline adds to them now: by the covariance of what is believed, and of that if
+    /// the outline is known.
     pub(crate) fn renew_common_error(&mut self, summary: &Summary, given_outline: &StateMatrix) {
         of_any_size!(self, hypotheses => hypotheses.renew_common_error(summary, given_outline));
     }

@@ -6,7 +6,7 @@ use freeform_riccati::MotionModel;
 use super::{
     family_fit::{Addition, Fit, FrameScatter, deviations},
     innovations::InnovationSeries,
-    possible_faults::moments_of_possible,
+    possible_faults::moments_of_fault,
     to_and_fro::{ChangeOfShape, ToAndFro},
     unmodelled_estimate::UnmodelledEstimate,
     wrong_family::{Found, WrongFamily, left_out_by, name_of},
@@ -163,11 +163,11 @@ impl FamilyTests {
         let is_told = |i: &usize| self.information[(*i, *i)] > 0.0 || EDGES.contains(i);
         let told: Vec<usize> = members.iter().copied().filter(is_told).collect();
         let ratio = largest_of(dependence, &told);
-        let Some((information, score)) = known.left_for((&self.information, &self.score), &told) else { return };
+        let Some((information, score)) = known.beside((&self.information, &self.score), &told) else { return };
         // Rows are read before the next frame.
         let most = if members == [READ_OUT] { 1.0 / tuning::USUAL_READ_OUT } else { f64::INFINITY };
         let sizes = (self.usual_size(members[0]), most);
-        let Some(possible) = moments_of_possible(&(information / ratio), &(score / ratio), sizes) else { return };
+        let Some(possible) = moments_of_fault(&(information / ratio), &(score / ratio), sizes) else { return };
         for (a, i) in told.iter().enumerate() {
             for (b, j) in told.iter().enumerate() {
                 moments[(*i, *j)] += possible[(a, b)];

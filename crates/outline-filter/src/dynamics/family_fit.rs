@@ -50,8 +50,8 @@ impl Fit {
         self.numbers.iter().position(|n| *n == number)
     }
 
-    /// What information and score say of some motions with these estimated along; `None` where numbers do not allow it.
-    pub(super) fn left_for(
+    /// Information and score of some motions beside these, which are eliminated: estimated along. `None` where numbers do not allow it.
+    pub(super) fn beside(
         &self,
         (information, score): (&UnmodelledMatrix, &UnmodelledVector),
         members: &[usize],
@@ -214,5 +214,24 @@ mod tests {
             Fit::of((&information, &(information * sizes)), &OF_LENS).off_a_lens()
         });
         assert!(all.is_some_and(|off| off < 1e-6) && some.is_none(), "{all:?} {some:?}");
+    }
+
+    #[test]
+    fn what_is_left_beside_motions_that_are_known_is_what_estimating_all_together_says() {
+        let mut rng = ChaCha8Rng::seed_from_u64(5);
+        let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
+        let factor = UnmodelledMatrix::from_fn(|_, _| normal());
+        let information = factor * factor.transpose() + UnmodelledMatrix::identity();
+        let score = UnmodelledVector::from_fn(|_, _| normal());
+        let of = |numbers: &[usize]| Fit::of((&information, &score), numbers);
+        for known in [vec![], vec![2, 5, 7]] {
+            let members = [0, 9];
+            let (left, right) = of(&known).beside((&information, &score), &members).expect("numbers");
+            let covariance = left.try_inverse().expect("regular");
+            let all = of(&[known.as_slice(), &members].concat());
+            let from = known.len();
+            assert!((&covariance - all.covariance.view((from, from), (2, 2))).amax() < 1e-12);
+            assert!((covariance * right - all.sizes.rows(from, 2)).amax() < 1e-12);
+        }
     }
 }

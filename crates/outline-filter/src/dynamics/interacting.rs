@@ -1,8 +1,8 @@
 //! The hypotheses side by side.
 use std::borrow::Cow;
 
-use freeform_riccati::{MAX_PARAMETERS, MotionModel};
-use nalgebra::{Matrix3, Point2, SMatrix, SVector};
+use freeform_riccati::MotionModel;
+use nalgebra::{Point2, SMatrix, SVector};
 
 use super::{
     arrival::Arrival,
@@ -20,10 +20,7 @@ use super::{
 };
 #[cfg(feature = "serde")]
 use crate::tuning::saved_state::SUM_OFF;
-use crate::{
-    belief::StateMatrix, map::NullDirection, prediction::PoseMatrix, tuning::dynamics as tuning,
-    update::PoseMeasurement,
-};
+use crate::{belief::StateMatrix, map::NullDirection, tuning::dynamics as tuning, update::PoseMeasurement};
 
 /// Hypotheses at most.
 pub(super) const MOST: usize = 3
@@ -62,8 +59,8 @@ pub(crate) struct InteractingHypotheses<const N: usize> {
     pub(super) turn_is_of_path: bool,
     /// Whether wrong poses have moved the outline: others than a constant generator have led, or the motion has changed.
     pub(super) outline_has_moved: bool,
-    /// The centroid of the outline as it was known when it was placed last. That of the reference pose is the same, where the outline has not been moved.
-    pub(super) centroid_now: Point2<f64>,
+    /// The centroid of the outline as it is now, by which that of the reference pose was placed last. `None` where it is to be placed anew.
+    pub(super) centroid_now: Option<Point2<f64>>,
 }
 
 impl<const N: usize> InteractingHypotheses<N> {
@@ -108,8 +105,8 @@ impl<const N: usize> InteractingHypotheses<N> {
             series: InnovationSeries::default(),
             shaking: 1.0,
             outline_has_moved: false,
-            centroid_now: centroid,
-            leads: setting != Dynamics::Auto && setting != Dynamics::Generator,
+            centroid_now: Some(centroid),
+            leads: false,
             turn_is_of_path: false,
         };
         for course in Course::all_of(setting) {
@@ -119,6 +116,9 @@ impl<const N: usize> InteractingHypotheses<N> {
         }
         filter.normalise();
         filter.reckon_with_change(seconds);
+        if setting != Dynamics::Auto && setting != Dynamics::Generator {
+            filter.lead_from_now_on();
+        }
         if setting == Dynamics::Generator && model <= MotionModel::Similarity && !null.is_empty() {
             filter.add_turn_of_path(null, seconds);
         }
@@ -126,7 +126,7 @@ impl<const N: usize> InteractingHypotheses<N> {
     }
 
     /// Mean and covariance about the centroid of what is believed, and of that if the outline is known.
-    fn about_centroid(
+    pub(super) fn about_centroid(
         model: MotionModel,
         (summary, given_outline): (&Summary, &StateMatrix),
         reference: &CentredPose,
@@ -134,14 +134,6 @@ impl<const N: usize> InteractingHypotheses<N> {
         let (change, k) = (reference.about_centroid(model), model.parameter_count());
         let of_poses = Summary { covariance: *given_outline, ..*summary };
         [summary, &of_poses].map(|summary| summary.about_centroid(&change, k))
-    }
-
-    /// Takes what poses have in common to be no less than what the outline adds to them now. Where parts of it come into view, while others are
-    /// hidden, they are learnt in poses that are measured against those before.
-    pub(crate) fn renew_common_error(&mut self, summary: &Summary, given_outline: &StateMatrix) {
-        let reference = CentredPose { pose: summary.pose, centroid: self.reference.centroid };
-        let [(_, covariance), (_, measured)] = Self::about_centroid(self.model, (summary, given_outline), &reference);
-        self.common.renew(&CommonError::of_outline(self.model, &covariance, &measured, &reference), &reference);
     }
 
     /// Begins to reckon with a steady change where the motion is constant: from the beginning, and after it has been seen to change.
@@ -154,15 +146,6 @@ impl<const N: usize> InteractingHypotheses<N> {
             self.steady_change =
                 constant.map(|constant| SteadyChange::begin(self.model, (constant.mean, constant.covariance), units));
         }
-    }
-
-    /// The centroid of the body frame that poses are counted from, that of the outline as it is now given. While it stays it is the same in both.
-    fn placed_at(&mut self, centroid: &Point2<f64>) -> Point2<f64> {
-        if self.centroid_now == *centroid {
-            return self.reference.centroid;
-        }
-        self.centroid_now = *centroid;
-        if self.outline_has_moved { self.common.before(centroid) } else { *centroid }
     }
 
     fn normalise(&mut self) {
@@ -183,7 +166,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         }
         debug_assert!(self.arrivals.is_empty(), "the step before has not ended");
         self.reckon_with_change(seconds);
-        let moved = CentredPose { pose: self.reference.pose, centroid: self.placed_at(&pose.centroid) };
+        let moved = CentredPose { pose: self.reference.pose, centroid: self.place_centroid(&pose.centroid) };
         let (model, reference) = (self.model, self.reference);
         if moved.centroid != reference.centroid {
             self.all().for_each(|hypothesis| hypothesis.move_centroid(model, &reference, &moved));
@@ -284,7 +267,9 @@ impl<const N: usize> InteractingHypotheses<N> {
         let weight = self.weights().generator;
         if self.setting == Dynamics::Auto {
             self.leads = if self.leads { weight < tuning::LEADS_UNTIL } else { weight < tuning::LEADS_FROM };
-            self.outline_has_moved |= self.leads;
+            if self.leads {
+                self.record_that_outline_moves();
+            }
             if self.weights().accelerating > 1.0 - tuning::OUTSIDE_INTERVAL {
                 self.steady_change = None;
             }
@@ -304,13 +289,8 @@ impl<const N: usize> InteractingHypotheses<N> {
 
     /// Records that the motion has changed in a way that no hypothesis models.
     pub(crate) fn record_change(&mut self) {
-        self.outline_has_moved = true;
+        self.record_that_outline_moves();
         self.steady_change = None;
-    }
-
-    /// Adds a displacement of the whole outline in the body frame, which later poses are measured against.
-    pub(crate) fn add_shift(&mut self, shift: &SVector<f64, MAX_PARAMETERS>) {
-        self.common.add_shift(shift);
     }
 
     /// Whether the hypotheses, and not a constant generator alone, say where the object is expected next.
@@ -341,45 +321,6 @@ impl<const N: usize> InteractingHypotheses<N> {
         let k = self.model.parameter_count();
         self.shaking * (0..k).map(|j| self.series.mean_square(j)).sum::<f64>().max(k as f64) / k as f64
     }
-
-    /// Covariance of the error of the body frame that all poses have in common, as the outline is now.
-    pub(crate) fn common_error(&self) -> Option<PoseMatrix> {
-        self.common.of_body_frame(&self.reference)
-    }
-
-    /// The covariance of where the body frame lies beside the outline as it is known now, as an error that all poses have in common.
-    pub(crate) fn error_beyond_outline(&self) -> Option<PoseMatrix> {
-        self.common.beyond_now(&self.reference)
-    }
-
-    /// The centroid, in the body frame that poses are counted from.
-    pub(crate) fn centroid(&self) -> Point2<f64> {
-        self.reference.centroid
-    }
-
-    /// The pose in which the outline as it is now lies where a pose of these hypotheses has it.
-    pub(crate) fn of_outline_now(&self, pose: &Matrix3<f64>) -> Matrix3<f64> {
-        self.common.of_outline_now(pose)
-    }
-
-    /// Sets another reference pose, near the one before.
-    pub(crate) fn set_reference(&mut self, pose: &Matrix3<f64>) -> bool {
-        let to = CentredPose { pose: *pose, centroid: self.reference.centroid };
-        let (model, k) = (self.model, self.model.parameter_count());
-        let Some(inverse) = self.reference.pose.try_inverse() else { return false };
-        let Some(moved) = model.motion_between(&(pose * inverse), 1.0) else { return false };
-        let moved = self.reference.about_centroid(model) * SVector::<f64, MAX_PARAMETERS>::from(moved);
-        let apart = to.centre() - self.reference.centre();
-        for hypothesis in self.all() {
-            for j in 0..k - 2 {
-                hypothesis.mean[j] -= moved[j];
-            }
-            hypothesis.mean[k - 2] -= apart.x;
-            hypothesis.mean[k - 1] -= apart.y;
-        }
-        self.reference = to;
-        true
-    }
 }
 
 #[cfg(feature = "serde")]
@@ -400,7 +341,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             && beyond.iter().all(|weight| *weight == 0.0)
             && is_finite(self.reference.pose.as_slice())
             && is_finite(self.reference.centroid.coords.as_slice())
-            && is_finite(self.centroid_now.coords.as_slice())
+            && self.centroid_now.is_none_or(|centroid| is_finite(centroid.coords.as_slice()))
             && self.pose_variance.iter().all(|variance| variance.is_finite() && *variance > 0.0)
             && self.steady_change.as_ref().is_none_or(SteadyChange::is_valid)
             && self.common.is_valid(model)

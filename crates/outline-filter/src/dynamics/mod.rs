@@ -23,6 +23,7 @@ mod interacting;
 mod mixing;
 mod null_motions;
 mod perspective;
+mod placing;
 mod possible_faults;
 mod probabilities;
 mod setting;

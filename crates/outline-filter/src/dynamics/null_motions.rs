@@ -10,7 +10,8 @@ impl<const N: usize> InteractingHypotheses<N> {
     /// allow.
     pub(super) fn add_turn_of_path(&mut self, null: &[NullDirection], seconds: f64) {
         let (from, k) = (self.reference.about_centroid(self.model), self.model.parameter_count());
-        (self.turn_is_of_path, self.leads) = (true, true);
+        self.turn_is_of_path = true;
+        self.lead_from_now_on();
         for NullDirection { direction, .. } in null {
             let direction = from * SVector::<f64, MAX_PARAMETERS>::from(*direction);
             let largest = (0..k - 2).map(|i| direction[i].abs()).fold(0.0, f64::max);

@@ -46,7 +46,8 @@ fn larger(a: ContourArea, b: ContourArea) -> ContourArea {
 }
 
 impl OutlineMap {
-    /// Goes through the contours that the cells make; whether all of them are closed. Cells have offsets along their normals, none where these are fewer.
+    /// Goes through the contours that the outline makes, at its offsets from the cells; whether all of them are closed. Cells beyond the last offset
+    /// have none.
     fn for_each_contour(&self, offsets: &[f64], mut each: impl FnMut(ContourArea)) -> bool {
         let (mut cells, mut start) = (0, 0);
         while cells < self.cells.len() && start < self.cells.len() {
@@ -67,8 +68,8 @@ impl OutlineMap {
         if self.for_each_contour(&[], |contour| contours.push(contour)) { contours } else { Vec::new() }
     }
 
-    /// Centroid of the area within the polygon of the outline at its offsets from the cells, if it is one closed contour; of several, within the largest,
-    /// which is the boundary of the body.
+    /// Centroid of the area within the polygon of the outline at its offsets from the cells, if it is one closed contour; of several, within the
+    /// largest, which is the boundary of the body.
     pub(super) fn area_centroid(&self, offsets: &[f64]) -> Option<Point2<f64>> {
         let mut largest: Option<ContourArea> = None;
         let are_closed = self.for_each_contour(offsets, |contour| {

@@ -38,8 +38,8 @@ impl OutlineMap {
         self.null_space.centroid = fixed.unwrap_or(centroid);
     }
 
-    /// The largest squared velocity of a point of the body in motions that span a space, in the mean of those of the cells; infinite where some motion
-    /// leaves all cells where they are.
+    /// The largest squared velocity of a point of the body in motions that span a space, in the mean of those of the cells; infinite where some
+    /// motion leaves all cells where they are.
     fn squared_velocity_at(&self, point: &Point2<f64>, model: MotionModel, motions: &[ParameterVector]) -> f64 {
         if motions.is_empty() {
             return 0.0;

@@ -1,7 +1,7 @@
 //! What is stated of the motion, with how well it is known, or why nothing is.
 use freeform_estimate::{MotionEstimate, MotionState, PointVelocity};
 use freeform_riccati::MAX_PARAMETERS;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, Point2};
 
 use super::{
     counts::Counts,
@@ -44,7 +44,7 @@ impl MotionFilter {
     fn stated_now(&self) -> Option<Statement> {
         let track = self.track.as_ref().filter(|track| track.is_shown())?;
         let own = track.summary_in_body_frame()?;
-        let (model, centroid) = (self.settings.model, track.centred_pose().centroid);
+        let (model, centroid) = (self.settings.model, self.centroid_of(track));
         let none = CentredDeviations::zeros();
         let mut random = own;
         let widening = track.noise().widening_by_correlation();
@@ -79,6 +79,11 @@ impl MotionFilter {
         let is_beyond_doubt = unmodelled.is_beyond_doubt && displacement > self.settings.edge_uncertainty;
         let family = unmodelled.family.filter(|_| is_beyond_doubt);
         Some(Statement { random, all, body_frame, family })
+    }
+
+    /// The centroid, in the body frame that the pose which is stated is counted from.
+    fn centroid_of(&self, track: &Track) -> Point2<f64> {
+        self.history.dynamics.as_ref().map_or(track.map().centroid(), DynamicsFilter::centroid)
     }
 
     /// Deviations of pose and motion about the centroid, normalised, by what frames do not average out: edges that are displaced, rounding to pixels,
@@ -235,8 +240,7 @@ impl MotionFilter {
         let is_ambiguous = self.turn_hypotheses.make_pose_doubtful() && self.ambiguity().is_some();
         let turn = if is_ambiguous { TurnOfPose::Ambiguous } else { TurnOfPose::AsTheOutlineShows };
         let track = self.track.as_ref()?;
-        let centroid = self.history.dynamics.as_ref().map_or(track.map().centroid(), DynamicsFilter::centroid);
-        track.state_of((all, body_frame, centroid), self.clock.of_track, observable, turn)
+        track.state_of((all, body_frame, self.centroid_of(track)), self.clock.of_track, observable, turn)
     }
 
     /// Velocity of the object's centroid, that of the area within its known outline (the centre of its cells where that is not one closed

@@ -104,6 +104,7 @@ impl Track {
             family: FamilyTests::default(),
             first_pose: FirstPose::default(),
             frames: 0,
+            frames_before_cells: 0,
         };
         if frame.deviations.ratios().is_some() {
             track.noise.counted = Counted::ByDeviation;

@@ -38,7 +38,8 @@ pub(crate) enum TurnOfPose {
 }
 
 impl Track {
-    /// What is believed of pose and motion counted from the body frame, wherever that lies, normalised; `None` where the covariance cannot be computed.
+    /// What is believed of pose and motion counted from the body frame, wherever that lies, normalised; `None` where the covariance cannot be
+    /// computed.
     pub(crate) fn summary_in_body_frame(&self) -> Option<Summary> {
         self.summary_by(&self.belief.marginal)
     }
@@ -85,8 +86,8 @@ impl Track {
         [pose, pose * (std::f64::consts::SQRT_2 / span)]
     }
 
-    /// Time that the motion is known from, in the filter's unit; positive. It is that of as many steps as the hypotheses of dynamics remember, and without
-    /// them that of a constant generator, which is shorter where only that changes.
+    /// Time that the motion is known from, in the filter's unit; positive. It is that of as many steps as the hypotheses of dynamics remember, and
+    /// without them that of a constant generator, which is shorter where only that changes.
     pub(crate) fn span_of_motion(&self, steps: Option<f64>) -> f64 {
         let memory = &self.belief.memory;
         let shortest = match steps {
@@ -96,8 +97,8 @@ impl Track {
         shortest.max(memory.step.min(memory.span)).max(f64::MIN_POSITIVE)
     }
 
-    /// Whether the object is known to be at rest: its squared motion in its covariance is that of none, and a deviation of it moves the outline over a
-    /// step by less than the noise of its points.
+    /// Whether the object is known to be at rest: its squared motion in its covariance is that of none, and a deviation of it moves the outline over
+    /// a step by less than the noise of its points.
     pub(crate) fn is_known_to_rest(&self) -> bool {
         let k = self.belief.parameter_count();
         let Some(summary) = self.summary_in_body_frame() else { return false };
@@ -205,8 +206,8 @@ impl Track {
         Some(hanging.into_iter().fold(estimate, MotionEstimate::with_unobservable))
     }
 
-    /// Pose and motion with their joint covariance at a time in the unit of the track, and that of where the body frame lies, with the parameters marked
-    /// that `observable` says nothing is known of.
+    /// Pose and motion with their joint covariance at a time in the unit of the track, and that of where the body frame lies, with the parameters
+    /// marked that `observable` says nothing is known of.
     pub(crate) fn state_of(
         &self,
         (summary, body_frame, centroid): (&Summary, &PoseMatrix, Point2<f64>),
@@ -273,8 +274,8 @@ impl Track {
         is_worth(deviation, span.max(memory.span.min(STEPS_KNOWN * memory.step)), displacement)
     }
 
-    /// Parameters about the centroid that take part in a motion which the outline does not show, or in a turn that is ambiguous: rates, entries of the
-    /// perspective, and, where such a motion moves the centroid, coordinates of this.
+    /// Parameters about the centroid that take part in a motion which the outline does not show, or in a turn that is ambiguous: rates, entries of
+    /// the perspective, and, where such a motion moves the centroid, coordinates of this.
     pub(super) fn hidden_parameters(&self, turn: TurnOfPose) -> [bool; MAX_PARAMETERS] {
         let (model, at) = (self.belief.model, self.centred_pose());
         let (change, kinds) = (at.about_centroid(model), model.parameter_kinds());

@@ -77,6 +77,7 @@ impl Track {
             before.into_iter().for_each(|before| self.map = before);
             return None;
         };
+        self.frames_before_cells = self.frames;
         let cells = map.cells().len();
         self.belief.information.cells.resize(cells);
         self.belief.offsets.resize(cells, 0.0);

@@ -5,13 +5,14 @@ use freeform_estimate::{MotionState, PointVelocity};
 use freeform_riccati::ParameterKind;
 
 use super::{Track, estimate::TurnOfPose};
-use crate::tuning::map::CENTROID_RENEWED;
+use crate::tuning::map::FRAMES_OF_CENTROID;
 
 impl Track {
-    /// Places the centroid by the outline as it is known now, each time that twice as many frames have told it: cells were cut along the points of
-    /// few frames, and smoothed. Where the outline does not show a motion, the centroid stays, as it is where that motion leaves it.
+    /// Places the centroid by the outline as it is known now, each time that twice as many frames have shown its cells: they were cut along the
+    /// points of few frames, and smoothed. Where the outline does not show a motion, the centroid stays, as it is where that motion leaves it.
     pub(super) fn renew_centroid(&mut self) {
-        let is_time = self.frames.is_power_of_two() && CENTROID_RENEWED.contains(&self.frames);
+        let shown = self.frames - self.frames_before_cells;
+        let is_time = shown.is_power_of_two() && FRAMES_OF_CENTROID.contains(&shown);
         if is_time && self.null_directions().is_empty() {
             Arc::make_mut(&mut self.map).place_centroid(self.belief.model, &self.belief.offsets);
         }
@@ -27,8 +28,8 @@ impl Track {
         velocity.standard_deviations().iter().all(worth).then_some(velocity)
     }
 
-    /// Whether the outline does not show how its centroid moves: where some of the perspective is hidden, or where a motion that it does not show moves
-    /// the centroid. Such a motion is held at none, with a deviation that says nothing of how far it may go.
+    /// Whether the outline does not show how its centroid moves: where some of the perspective is hidden, or where a motion that it does not show
+    /// moves the centroid. Such a motion is held at none, with a deviation that says nothing of how far it may go.
     pub(crate) fn hides_velocity(&self) -> bool {
         self.hides_perspective() || self.map.hides_motion_of_centroid(self.model())
     }

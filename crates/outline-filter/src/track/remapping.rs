@@ -116,8 +116,8 @@ impl Track {
         self.belief.motion = other.belief.motion;
     }
 
-    /// A motion with the rates of now that takes the centroid from one pose to another in so many seconds. The turn between the two may be another: that of
-    /// an outline that looks the same after it. `None` for projective motion, and where numbers do not allow it.
+    /// A motion with the rates of now that takes the centroid from one pose to another in so many seconds. The turn between the two may be another:
+    /// that of an outline that looks the same after it. `None` for projective motion, and where numbers do not allow it.
     pub(crate) fn motion_over(&self, ([from, to], seconds): ([&Matrix3<f64>; 2], f64)) -> Option<ParameterVector> {
         let model = self.model();
         if model == MotionModel::Projective {

@@ -26,6 +26,7 @@ impl Track {
             && stated > 0.0
             && time_unit == unit
             && self.frames < StateFormat::MOST_COUNTED
+            && self.frames_before_cells <= self.frames
             && self.belief.is_valid(cells)
             && (cells == 0 || self.map.may_be_stretched() == (self.belief.model > MotionModel::Similarity))
             && self.noise.is_valid(cells)

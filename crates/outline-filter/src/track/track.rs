@@ -54,6 +54,8 @@ pub(crate) struct Track {
     pub(super) first_pose: FirstPose,
     /// Frames taken.
     pub(super) frames: usize,
+    /// Of these, those that had been taken when cells were added last.
+    pub(super) frames_before_cells: usize,
 }
 
 impl Track {

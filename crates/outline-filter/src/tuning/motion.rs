@@ -198,8 +198,8 @@ pub(crate) mod family {
     /// Rows that an object takes up, in radii: about twice its root mean square radius, and less where it is flat. A camera has read them before
     /// the next frame.
     pub(crate) const ROWS_OF_OBJECT: f64 = 2.0;
-    /// Sizes that the errors of pictures have, in the usual one, with the share of those that have it: one so many times as large is as many times
-    /// as rare.
+    /// Sizes that the errors of pictures have, in usual ones, with the share of the pictures with an error that have it: an error of three times the
+    /// size is three times as rare. Ten usual errors, pixels a tenth too wide or a plane tilted by 25 degrees, are as large as they come unnoticed.
     pub(crate) const SIZES: [(f64, f64); 3] = [(1.0, 0.7), (3.0, 0.23), (10.0, 0.07)];
     /// Odds against a picture that is off in one of these ways.
     pub(crate) const ODDS_AGAINST: f64 = 9.0;
@@ -224,8 +224,9 @@ pub(crate) mod family {
     /// Share of the frames that must tell a motion for those that do not show it to speak against it: where less than half of them do, most of a
     /// series is empty, and that it is told in one stretch says when it could be seen and not when it was there.
     pub(crate) const MOST_TELL: f64 = 0.5;
-    /// Share of the square of a displacement that must be left of it in a frame to say something: a hundredth of the displacement. What the pose takes
-    /// of it is known to some percent, so that a size may be off by as much as it is itself, and of what is not there nothing is left.
+    /// Share of the square of a displacement that must be left of it in a frame to say something: a hundredth of the displacement. How much pose and
+    /// outline take of it is known to some percent, so that of smaller shares a size may be wrong by as much as itself. Of pixels that are 1 to 6 %
+    /// too wide in 300 short or slow recordings 10 more were silently off with a tenth, and of 240 without a fault none with either.
     pub(crate) const LEFT: f64 = 1e-4;
     /// As that, in variances of the direction of the normals: errors of normals leave some of a motion along the outline, which it does not show...
     pub(crate) const LEFT_PER_NOISE: f64 = 1.0;

@@ -2,9 +2,9 @@
 
 /// The map: cells along the outline, cut from points.
 pub(crate) mod map {
-    /// Frames after which the centroid is placed anew by what they have told of the outline. After the last its error is an eighth of that by the noise
-    /// of one frame.
-    pub(crate) const CENTROID_RENEWED: std::ops::RangeInclusive<usize> = 4..=64;
+    /// Frames, powers of two among them, after which the centroid is placed anew by what they have told of the outline. After the last its error is
+    /// an eighth of that by the noise of one frame.
+    pub(crate) const FRAMES_OF_CENTROID: std::ops::RangeInclusive<usize> = 4..=64;
     /// Mean square of the normals in the direction that they have least of, below which an outline is mostly straight: an ellipse four
     /// times as long as wide has 0.11, a bar ten times as long as wide that is cut at one end 0.05.
     pub(crate) const MOSTLY_STRAIGHT: f64 = 0.1;
@@ -19,8 +19,8 @@ pub(crate) mod map {
     pub(crate) const PLENTY_PER_CELL: f64 = 4.0;
     /// Fewest points of the first frame for each cell: with fewer, cells would be seen by chance.
     pub(crate) const POINTS_PER_CELL: f64 = 1.0;
-    /// Cells for each point of one frame at most, of several frames together which must have cells in common: each then shows two in three. Where points
-    /// are evenly spaced and there are four cells for each, frames fall into four classes that have no cell in common.
+    /// Cells for each point of one frame at most, of several frames together which must have cells in common: each then shows two in three. Where
+    /// points are evenly spaced and there are four cells for each, frames fall into four classes that have no cell in common.
     pub(crate) const COMMON_CELLS_PER_POINT: f64 = 1.5;
     /// Fewest points for each cell then: as many as the frames from which a map is first cut anew, so that each of them
     /// shows every cell. With one, where there is little noise, every point has a cell of its own; with as few cells where many frames are kept, corners
