@@ -2,7 +2,10 @@
 use freeform_riccati::{MAX_PARAMETERS, MotionModel, map_point};
 use nalgebra::{Matrix2, Matrix3, Point2, SMatrix, SVector};
 
-use crate::prediction::{PoseMatrix, moved_covariance};
+use crate::{
+    prediction::{PoseMatrix, moved_covariance},
+    tuning::map::FRAMES_OF_CENTROID,
+};
 
 use super::centred::{CentredMatrix, CentredPose, LARGEST, centred_order};
 #[cfg(feature = "serde")]
@@ -81,13 +84,17 @@ impl CommonError {
         Some(())
     }
 
-    /// Takes the covariance of another for that of now, of the same poses, and for the largest, where it is larger.
+    /// Takes the covariance of another for that of now, of the same poses, and for the largest, where it is larger. It falls with the number of frames, as
+    /// errors of offsets are taken to be independent, but to no less than what is left of the largest where the centroid is placed for the last time.
     pub(super) fn renew(&mut self, now: &Self, pose: &CentredPose) {
-        let before = self.largest.covariance_in(pose, self.model);
-        if before.is_some_and(|before| now.now.covariance.trace() > before.trace()) {
-            self.largest = now.now;
-        }
         self.now = now.now;
+        let Some(before) = self.largest.covariance_in(pose, self.model) else { return };
+        let (least, now) = (before / *FRAMES_OF_CENTROID.end() as f64, now.now);
+        if now.covariance.trace() > before.trace() {
+            self.largest = now;
+        } else if now.covariance.trace() < least.trace() {
+            self.now.covariance = least;
+        }
     }
 
     /// The covariance of where the body frame lies beside the outline as it is known now, about the origin, as an error that all poses have: what the
@@ -215,6 +222,10 @@ mod tests {
         let expected = change * (common.largest.covariance * 0.75) * change.transpose();
         let beyond = common.beyond_now(&reference()).expect("a pose");
         assert!((beyond - expected).amax() < 1e-14, "{beyond} {expected}");
+        // In many frames no less than what the centroid has in error for good.
+        let now = [covariance, given_outline].map(|covariance| covariance * 1e-6);
+        common.renew(&CommonError::of_outline(MotionModel::Rigid, &now[0], &now[1], &reference()), &reference());
+        assert!((common.now.covariance - common.largest.covariance / 64.0).amax() < 1e-15);
         // Nowhere less than none, where some of it is larger now and some smaller.
         common.now.covariance[(0, 0)] = 2.0 * common.largest.covariance[(0, 0)];
         let beyond = common.beyond_now(&reference()).expect("a pose");

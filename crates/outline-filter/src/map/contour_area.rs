@@ -2,7 +2,7 @@
 use nalgebra::{Matrix2, Point2, Vector2};
 
 use super::OutlineMap;
-use crate::tuning::null_space as tuning;
+use crate::{belief::KnownOffsets, tuning::null_space as tuning};
 
 /// The area within a closed contour of cells.
 #[derive(Debug, Clone, Copy)]
@@ -48,7 +48,7 @@ fn larger(a: ContourArea, b: ContourArea) -> ContourArea {
 impl OutlineMap {
     /// Goes through the contours that the outline makes, at its offsets from the cells; whether all of them are closed. Cells beyond the last offset
     /// have none.
-    fn for_each_contour(&self, offsets: &[f64], mut each: impl FnMut(ContourArea)) -> bool {
+    fn for_each_contour(&self, offsets: KnownOffsets<'_>, mut each: impl FnMut(ContourArea)) -> bool {
         let (mut cells, mut start) = (0, 0);
         while cells < self.cells.len() && start < self.cells.len() {
             let Some(contour) = self.contour_from(start, offsets) else { return false };
@@ -62,15 +62,21 @@ impl OutlineMap {
         true
     }
 
+    /// Where the outline lies on the normal of a cell, as far as that is known.
+    fn known_place(&self, cell: usize, offsets: KnownOffsets<'_>) -> Point2<f64> {
+        let at = &self.cells[cell];
+        at.centre + offsets.of(cell) * at.normal
+    }
+
     /// The contours that the cells make, if all of them are closed; none where there are no cells.
     pub(super) fn closed_contours(&self) -> Vec<ContourArea> {
         let mut contours = Vec::new();
-        if self.for_each_contour(&[], |contour| contours.push(contour)) { contours } else { Vec::new() }
+        if self.for_each_contour(KnownOffsets::NONE, |contour| contours.push(contour)) { contours } else { Vec::new() }
     }
 
     /// Centroid of the area within the polygon of the outline at its offsets from the cells, if it is one closed contour; of several, within the
     /// largest, which is the boundary of the body.
-    pub(super) fn area_centroid(&self, offsets: &[f64]) -> Option<Point2<f64>> {
+    pub(super) fn area_centroid(&self, offsets: KnownOffsets<'_>) -> Option<Point2<f64>> {
         let mut largest: Option<ContourArea> = None;
         let are_closed = self.for_each_contour(offsets, |contour| {
             largest = Some(largest.map_or(contour, |before| larger(before, contour)));
@@ -104,7 +110,7 @@ impl OutlineMap {
     }
 
     /// The closed contour that a cell is of; `None` where it is of an open one.
-    fn contour_from(&self, start: usize, offsets: &[f64]) -> Option<ContourArea> {
+    fn contour_from(&self, start: usize, offsets: KnownOffsets<'_>) -> Option<ContourArea> {
         let origin = self.cells.get(start)?.centre;
         let mut contour = ContourArea {
             origin,
@@ -116,7 +122,7 @@ impl OutlineMap {
         };
         let (mut last, mut here) = (start, self.cells[start].neighbours[1]);
         loop {
-            contour.add_chord(&self.outline_at(last, offsets), &self.outline_at(here, offsets));
+            contour.add_chord(&self.known_place(last, offsets), &self.known_place(here, offsets));
             contour.least = contour.least.min(here);
             if here == start {
                 return (contour.cells > 1).then_some(contour);
@@ -172,8 +178,13 @@ mod tests {
         let track = Track::begin(MotionModel::Rigid, &outline, 0.0, &mut Frame::default()).expect("a track");
         let shift = Vector2::new(0.03, -0.02);
         let offsets: Vec<f64> = track.map().cells().iter().map(|cell| cell.normal.dot(&shift)).collect();
-        let centroid = |offsets: &[f64]| track.map().area_centroid(offsets).expect("a closed contour");
-        let moved = centroid(&offsets) - centroid(&[]);
+        let centroid = |offsets: KnownOffsets<'_>| track.map().area_centroid(offsets).expect("a closed contour");
+        let known = |information: &[f64]| {
+            centroid(KnownOffsets { offsets: &offsets, information }) - centroid(KnownOffsets::NONE)
+        };
+        let moved = known(&vec![1.0; offsets.len()]);
         assert!((moved - shift).norm() < 1e-3 * shift.norm(), "{moved}");
+        // Those of cells that no frame has shown say nothing.
+        assert_eq!(known(&vec![0.0; offsets.len()]), Vector2::zeros());
     }
 }

@@ -3,7 +3,10 @@ use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector, ProjectiveM
 use nalgebra::{Matrix2, Matrix3, Point2, SMatrix, Vector2};
 
 use super::OutlineMap;
-use crate::tuning::null_space::{MOVES_MIDDLE, TAKES_PART};
+use crate::{
+    belief::KnownOffsets,
+    tuning::null_space::{MOVES_MIDDLE, TAKES_PART},
+};
 
 /// Squared velocity of a point, in the mean of those of the cells, up to which it stays.
 const STAYS: f64 = TAKES_PART * TAKES_PART;
@@ -21,7 +24,7 @@ impl OutlineMap {
     /// Puts the centroid at that of the area or of the cells, or, where some motion that is not shown moves this, at the point nearest to it which
     /// all such motions leave where it is: the centre of a disc of which half is seen, or the vertex of a corner that may grow. Where there
     /// is no such point, or none nearby, it stays. The outline lies at these offsets from its cells.
-    pub(crate) fn place_centroid(&mut self, model: MotionModel, offsets: &[f64]) {
+    pub(crate) fn place_centroid(&mut self, model: MotionModel, offsets: KnownOffsets<'_>) {
         let of_cells = Point2::new(self.null_space.frame.m13, self.null_space.frame.m23);
         // The area of an outline that crosses itself may have its centroid anywhere.
         let is_within = |centroid: &Point2<f64>| (centroid - of_cells).norm() <= self.null_space.frame.m11;

@@ -13,9 +13,12 @@ use super::{
     to_image::ToImage,
     turn_evidence::{TurnEvent, TurnEvidence},
 };
-use crate::tuning::{
-    contour::{NO_DIRECTION, NORMAL_NOISE},
-    null_space as tuning,
+use crate::{
+    belief::KnownOffsets,
+    tuning::{
+        contour::{NO_DIRECTION, NORMAL_NOISE},
+        null_space as tuning,
+    },
 };
 
 /// Generator of a turn about the origin by 1 rad, clockwise where y points up.
@@ -89,7 +92,7 @@ impl OutlineMap {
     }
 
     /// After a frame that has not shown the turn about the object's centroid: marks it as not observable.
-    pub(crate) fn hide_turn(&mut self, model: MotionModel, offsets: &[f64]) {
+    pub(crate) fn hide_turn(&mut self, model: MotionModel, offsets: KnownOffsets<'_>) {
         let space = &mut self.null_space;
         if !space.holds_turn(model) && space.frame.try_inverse().is_some() {
             space.turn = space.turn.after(TurnEvent::NotSeen);
@@ -147,7 +150,7 @@ impl OutlineMap {
     }
 
     /// Undoes [`hide_turn`](Self::hide_turn), so that it can be asked anew whether the turn is seen.
-    pub(crate) fn show_turn(&mut self, model: MotionModel, offsets: &[f64]) {
+    pub(crate) fn show_turn(&mut self, model: MotionModel, offsets: KnownOffsets<'_>) {
         let space = &mut self.null_space;
         if space.turn.is_hidden() && space.turn != TurnEvidence::Refuted {
             space.turn = space.turn.after(TurnEvent::AskedAnew);
@@ -167,7 +170,7 @@ impl OutlineMap {
     }
 
     /// Finds the null directions from the lever arms of the cells about their mean; `sigma` is the deviation of the noise.
-    pub(crate) fn find_null_directions(&mut self, model: MotionModel, sigma: f64, offsets: &[f64]) {
+    pub(crate) fn find_null_directions(&mut self, model: MotionModel, sigma: f64, offsets: KnownOffsets<'_>) {
         let k = model.parameter_count();
         let count = self.cells.len() as f64;
         let contours = self.closed_contours();

@@ -189,9 +189,7 @@ impl Resolution {
         let sigma = (variance / f64::max(count, 1.0)).sqrt().max(crate::tuning::noise::SMALLEST);
         let points_per_cell = match in_common {
             CellsInCommon::NotNeeded => tuning::POINTS_PER_CELL,
-            CellsInCommon::Needed => {
-                tuning::POINTS_PER_COMMON_CELL.max(count / (tuning::COMMON_CELLS_PER_POINT * points as f64))
-            }
+            CellsInCommon::Needed => tuning::POINTS_PER_COMMON_CELL,
         };
         let finest = (count / points_per_cell).clamp(tuning::FEWEST_OF_FINEST, tuning::MOST_CELLS);
         let plenty = (tuning::LEAST_NOISE_PER_CELL * sigma).max(tuning::PLENTY_PER_CELL * length / points as f64);

@@ -129,14 +129,9 @@ impl MotionFilter {
         self.window.set_ahead(next);
     }
 
-    /// A track of cells cut anew, begun with the first of the frames kept as the present one knows it. Where the motion may have changed since it
-    /// begins with that of the first step: the points of the next frame that come to cells which the first has not shown are measured where it takes
-    /// them.
+    /// A track of cells cut anew, begun with the first of the frames kept as the present one knows it.
     pub(super) fn begun_on(&mut self, mut new: Track) -> Option<Track> {
-        let track = self.track.as_ref()?;
-        new.begin_as(track, self.window.first()?, &mut self.frame);
-        let first = self.window.first_step().filter(|_| self.may_change()).and_then(|step| track.motion_over(step));
-        first.into_iter().for_each(|motion| new.set_motion(motion));
+        new.begin_as(self.track.as_ref()?, self.window.first()?, &mut self.frame);
         Some(new)
     }
 

@@ -76,7 +76,7 @@ impl MotionFilter {
     }
 
     /// Whether the motion changes, as is seen or as the settings say.
-    pub(super) fn may_change(&self) -> bool {
+    fn may_change(&self) -> bool {
         self.history.is_changing() || !self.settings.process_noise.is_none()
     }
 
@@ -85,8 +85,8 @@ impl MotionFilter {
         if self.may_change() { CellsInCommon::Needed } else { CellsInCommon::NotNeeded }
     }
 
-    /// Puts the points of the first frames in order, for the hypothesis of a turn, after so many cuts, for a map to be cut along them: where there
-    /// are rivals, after the next frame.
+    /// Puts the points of the first frames in order, for the hypothesis of a turn, after so many cuts, for a map to be cut along them: where there are
+    /// rivals, after the next frame.
     pub(super) fn place(&mut self, turn: f64, cuts: usize) -> Remapping {
         let Some(track) = &self.track else { return Remapping::Idle };
         let hypotheses = 1 + self.turn_hypotheses.followed().count();
@@ -252,10 +252,6 @@ impl Remapper<'_> {
             begun.begin_as(rival, frames.first()?.outline, buffers);
             Some(begun)
         })?;
-        let may_change = in_common == CellsInCommon::Needed;
-        let first = self.window.first_step().filter(|_| may_change).and_then(|step| rival.motion_over(step));
-        let mut begun = begun;
-        first.into_iter().for_each(|motion| begun.set_motion(motion));
         Some(Remapped::at_first(begun))
     }
 

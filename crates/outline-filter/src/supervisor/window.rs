@@ -291,14 +291,6 @@ impl InitialisationWindow {
         placed.map(|((time, outline), pose)| PlacedFrame { time: *time, outline, pose: *pose }).collect()
     }
 
-    /// The first two poses in which they were found, and the time between them.
-    pub(super) fn first_step(&self) -> Option<([&Matrix3<f64>; 2], f64)> {
-        match (self.frames.as_slice(), self.poses.as_slice()) {
-            ([(before, _), (after, _), ..], [from, to, ..]) => Some(([from, to], after - before)),
-            _ => None,
-        }
-    }
-
     /// In the poses that the motion of a map puts them in: where they were if it has never changed.
     pub(super) fn by_motion(&self, track: &Track) -> Vec<PlacedFrame<'_>> {
         track.placed(self.frames.iter().map(|(time, outline)| (*time, outline)))

@@ -70,7 +70,7 @@ impl Track {
         let sigma = self.noise.sigma / self.belief.scale();
         let of_frame = sigma * frame.deviations.typical();
         let grown = map.grow(contours, of_frame, &self.belief.offsets).filter(|first_new| {
-            map.find_null_directions(model, sigma, &self.belief.offsets);
+            map.find_null_directions(model, sigma, self.belief.known_offsets());
             map.are_shown_by_new(model, *first_new, &null_in_body)
         });
         let Some(first_new) = grown else {

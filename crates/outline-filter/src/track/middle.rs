@@ -14,7 +14,7 @@ impl Track {
         let shown = self.frames - self.frames_before_cells;
         let is_time = shown.is_power_of_two() && FRAMES_OF_CENTROID.contains(&shown);
         if is_time && self.null_directions().is_empty() {
-            Arc::make_mut(&mut self.map).place_centroid(self.belief.model, &self.belief.offsets);
+            Arc::make_mut(&mut self.map).place_centroid(self.belief.model, self.belief.known_offsets());
         }
     }
 

@@ -1,6 +1,6 @@
 //! Remapping: the map cut anew from several frames together, once they are aligned.
 use freeform_curve_fit::Outline;
-use freeform_riccati::{MotionModel, ParameterVector, map_point};
+use freeform_riccati::map_point;
 use nalgebra::{Matrix3, Point2};
 
 use super::Track;
@@ -116,23 +116,6 @@ impl Track {
         self.belief.motion = other.belief.motion;
     }
 
-    /// A motion with the rates of now that takes the centroid from one pose to another in so many seconds. The turn between the two may be another:
-    /// that of an outline that looks the same after it. `None` for projective motion, and where numbers do not allow it.
-    pub(crate) fn motion_over(&self, ([from, to], seconds): ([&Matrix3<f64>; 2], f64)) -> Option<ParameterVector> {
-        let model = self.model();
-        if model == MotionModel::Projective {
-            return None;
-        }
-        let now = &self.belief.motion[..self.belief.parameter_count()];
-        let [from, to] = [from, to].map(|pose| map_point(pose, &self.map.centroid()));
-        let along = model.linear_flow_with_integral(now, seconds).1;
-        let velocity = along.try_inverse()? * (to - from);
-        let mut generator = model.generator(now);
-        let linear = generator.fixed_view::<2, 2>(0, 0).into_owned();
-        generator.fixed_view_mut::<2, 1>(0, 2).copy_from(&(velocity - linear * from.coords));
-        Some(model.parameters_of(&generator))
-    }
-
     /// A track that has been begun in the same frame and in the same pose as another, at that frame, for another motion, which that other track
     /// has: an outline has cells of one length in both, so that frames that are measured on them tell the two apart by what they show. `None`
     /// where the other track was not begun in the same pose.
@@ -222,18 +205,5 @@ mod tests {
         assert!(is_cut(0.0));
         assert!(is_cut(0.02));
         assert!(!is_cut(0.07));
-    }
-
-    #[test]
-    fn a_motion_over_a_step_takes_the_centroid_there_whatever_the_turn_was_found_to_be() {
-        let mut track = Track::begin(MotionModel::Rigid, &egg(0), 0.0, &mut Frame::default()).expect("a track");
-        track.belief.motion[..3].copy_from_slice(&[1.5, 4.0, -7.0]);
-        let (from, seconds) = (MotionModel::Rigid.flow(&[0.3, 0.2, -0.1], 1.0).into_inner(), 0.1);
-        // A square would have been found to have turned by as much the other way.
-        let to = MotionModel::Rigid.flow(&[-3.0, 0.5, 0.2], seconds).into_inner() * from;
-        let motion = track.motion_over(([&from, &to], seconds)).expect("a motion");
-        let moved = MotionModel::Rigid.flow(&motion[..3], seconds).into_inner() * from;
-        let [moved, found] = [moved, to].map(|pose| map_point(&pose, &track.map.centroid()));
-        assert!((moved - found).norm() < 1e-12 && (motion[0] - 1.5).abs() < 1e-12, "{motion:?}");
     }
 }

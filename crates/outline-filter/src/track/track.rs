@@ -363,14 +363,14 @@ impl Track {
     /// After a frame that has not shown the turn: marks it as not observable.
     pub(crate) fn hide_turn(&mut self) {
         if !self.turn_is_unseen() {
-            Arc::make_mut(&mut self.map).hide_turn(self.belief.model, &self.belief.offsets);
+            Arc::make_mut(&mut self.map).hide_turn(self.belief.model, self.belief.known_offsets());
         }
     }
 
     /// Undoes [`hide_turn`](Self::hide_turn), so that it can be asked anew whether the turn is seen.
     pub(crate) fn show_turn(&mut self) {
         if self.turn_evidence().is_hidden() {
-            Arc::make_mut(&mut self.map).show_turn(self.belief.model, &self.belief.offsets);
+            Arc::make_mut(&mut self.map).show_turn(self.belief.model, self.belief.known_offsets());
         }
     }
 

@@ -2,6 +2,8 @@
 
 /// The map: cells along the outline, cut from points.
 pub(crate) mod map {
+    /// Points that must have shown the offset of a cell for the centroid to count on it: one alone may have been measured in a wrong pose.
+    pub(crate) const SEEN: f64 = 1.5;
     /// Frames, powers of two among them, after which the centroid is placed anew by what they have told of the outline. After the last its error is
     /// an eighth of that by the noise of one frame.
     pub(crate) const FRAMES_OF_CENTROID: std::ops::RangeInclusive<usize> = 4..=64;
@@ -19,10 +21,7 @@ pub(crate) mod map {
     pub(crate) const PLENTY_PER_CELL: f64 = 4.0;
     /// Fewest points of the first frame for each cell: with fewer, cells would be seen by chance.
     pub(crate) const POINTS_PER_CELL: f64 = 1.0;
-    /// Cells for each point of one frame at most, of several frames together which must have cells in common: each then shows two in three. Where
-    /// points are evenly spaced and there are four cells for each, frames fall into four classes that have no cell in common.
-    pub(crate) const COMMON_CELLS_PER_POINT: f64 = 1.5;
-    /// Fewest points for each cell then: as many as the frames from which a map is first cut anew, so that each of them
+    /// As that, of several frames together which must have cells in common: as many as the frames from which a map is first cut anew, so that each of them
     /// shows every cell. With one, where there is little noise, every point has a cell of its own; with as few cells where many frames are kept, corners
     /// would be cut off.
     pub(crate) const POINTS_PER_COMMON_CELL: f64 = 4.0;
