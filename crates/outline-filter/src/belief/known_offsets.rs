@@ -13,7 +13,7 @@ impl KnownOffsets<'_> {
     /// None of any cell.
     pub(crate) const NONE: Self = Self { offsets: &[], information: &[] };
 
-    /// That of a cell; 0 where no frame has shown it, as nothing is known then.
+    /// That of a cell; 0 where too few points have shown it to be relied on.
     pub(crate) fn of(self, cell: usize) -> f64 {
         let is_known = self.information.get(cell).is_some_and(|information| *information > SEEN);
         self.offsets.get(cell).copied().filter(|_| is_known).unwrap_or(0.0)
