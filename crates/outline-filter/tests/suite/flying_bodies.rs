@@ -1,13 +1,12 @@
 //! Bodies that fly straight and spin: the velocity of their centroid, of frames whose points are evenly spaced.
-use freeform_curve_fit::Outline;
+use freeform_curve_fit::{AreaMoments, ClosedOutline, Outline};
 use freeform_outline_filter::MotionFilter;
 use freeform_riccati::MotionModel;
-use nalgebra::{Point2, Rotation2, Vector2};
+use nalgebra::{Point2, Vector2};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution as _, Normal};
 
-use crate::filter_support::filter;
+use crate::{filter_support::filter, gaps::points_with_noise};
 
 const FRAME_RATE: f64 = 30.0;
 const FRAMES: u32 = 60;
@@ -22,31 +21,9 @@ fn body(random: &mut ChaCha8Rng) -> Vec<Point2<f64>> {
         let radius = 1.0 + waves.iter().map(|[times, size, phase]| size * (times * t + phase).cos()).sum::<f64>();
         Point2::new(radius * t.cos(), 0.8 * radius * t.sin())
     };
-    let mut places: Vec<_> = (0..2000).map(place).collect();
-    let (mut area, mut moment) = (0.0, Vector2::zeros());
-    for (p, q) in places.iter().zip(places.iter().cycle().skip(1)) {
-        let twice = p.coords.perp(&q.coords);
-        area += twice;
-        moment += twice * (p.coords + q.coords) / 3.0;
-    }
-    places.iter_mut().for_each(|p| *p -= moment / area);
-    places
-}
-
-/// So many points of a closed line, evenly spaced from a place on it that is drawn.
-fn evenly(line: &[Point2<f64>], count: usize, random: &mut ChaCha8Rng) -> Vec<Point2<f64>> {
-    let mut along = vec![0.0];
-    for (p, q) in line.iter().zip(line.iter().cycle().skip(1)) {
-        along.push(along[along.len() - 1] + (q - p).norm());
-    }
-    let (length, part) = (along[line.len()], random.random_range(0.0..1.0));
-    let at = |i: usize| {
-        let s = (i as f64 + part) / count as f64 * length;
-        let before = along.partition_point(|known| *known <= s) - 1;
-        let share = (s - along[before]) / (along[before + 1] - along[before]);
-        line[before] + share * (line[(before + 1) % line.len()] - line[before])
-    };
-    (0..count).map(at).collect()
+    let outline = ClosedOutline::new((0..2000).map(place).collect()).expect("an outline");
+    let centroid = AreaMoments::of(&outline).expect("an area").centroid;
+    outline.points().iter().map(|p| p - centroid.coords).collect()
 }
 
 /// A body that flies straight, with a spin that is positive where it turns clockwise.
@@ -54,7 +31,7 @@ struct Flight {
     body: Vec<Point2<f64>>,
     spin: f64,
     velocity: Vector2<f64>,
-    points: usize,
+    points: u32,
     noise: f64,
 }
 
@@ -70,15 +47,9 @@ impl Flight {
     }
 
     fn outline(&self, frame: u32, random: &mut ChaCha8Rng) -> Outline {
-        let noise = Normal::new(0.0, self.noise).expect("a deviation");
         let time = f64::from(frame) / FRAME_RATE;
-        let turn = Rotation2::new(-self.spin * time);
-        let mut points = evenly(&self.body, self.points, random);
-        for p in &mut points {
-            *p += Vector2::new(noise.sample(random), noise.sample(random));
-            *p = turn * *p + self.velocity * time;
-        }
-        Outline::closed(points).expect("an outline")
+        let pose = (-self.spin * time, self.velocity * time);
+        Outline::closed(points_with_noise(self.noise, &self.body, self.points, pose, random)).expect("an outline")
     }
 
     fn run(&self, random: &mut ChaCha8Rng) -> MotionFilter {
@@ -92,7 +63,7 @@ impl Flight {
 
     /// Deviation of the velocity of a line through all places, each known as well as the points of its frame tell it.
     fn of_line(&self) -> f64 {
-        let of_place = self.noise * (2.0 / self.points as f64).sqrt();
+        let of_place = self.noise * (2.0 / f64::from(self.points)).sqrt();
         let frames = f64::from(FRAMES);
         of_place * FRAME_RATE * (12.0 / frames.powi(3)).sqrt()
     }

@@ -19,13 +19,24 @@ const VELOCITY: Vector2<f64> = Vector2::new(0.4, -0.3);
 pub(crate) fn points_on(
     polygon: &[Point2<f64>],
     count: u32,
+    pose: (f64, Vector2<f64>),
+    random: &mut ChaCha8Rng,
+) -> Vec<Point2<f64>> {
+    points_with_noise(NOISE, polygon, count, pose, random)
+}
+
+/// As [`points_on`], with noise of a deviation.
+pub(crate) fn points_with_noise(
+    noise: f64,
+    polygon: &[Point2<f64>],
+    count: u32,
     (turn, centre): (f64, Vector2<f64>),
     random: &mut ChaCha8Rng,
 ) -> Vec<Point2<f64>> {
     let sides: Vec<_> =
         (0..polygon.len()).map(|i| (polygon[i], polygon[(i + 1) % polygon.len()] - polygon[i])).collect();
     let length: f64 = sides.iter().map(|(_, side)| side.norm()).sum();
-    let (normal, start) = (Normal::new(0.0, NOISE).expect("a deviation"), random.random::<f64>() * length);
+    let (normal, start) = (Normal::new(0.0, noise).expect("a deviation"), random.random::<f64>() * length);
     let mut place = |i: u32| {
         let mut along = (start + f64::from(i) * length / f64::from(count)) % length;
         let (from, side) = sides.iter().find(|(_, side)| {
