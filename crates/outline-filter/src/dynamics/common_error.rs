@@ -84,15 +84,16 @@ impl CommonError {
         Some(())
     }
 
-    /// Takes the covariance of another for that of now, of the same poses, and for the largest, where it is larger. It falls with the number of frames, as
-    /// errors of offsets are taken to be independent, but to no less than what is left of the largest where the centroid is placed for the last time.
-    pub(super) fn renew(&mut self, now: &Self, pose: &CentredPose) {
-        self.now = now.now;
-        let Some(before) = self.largest.covariance_in(pose, self.model) else { return };
-        let (least, now) = (before / *FRAMES_OF_CENTROID.end() as f64, now.now);
-        if now.covariance.trace() > before.trace() {
-            self.largest = now;
-        } else if now.covariance.trace() < least.trace() {
+    /// Takes the covariance of another for that of now, of the same poses, and for the largest, where it is larger. It falls with the number of
+    /// frames, as errors of offsets are taken to be independent, but to no less than what is left of the largest where the centroid is placed for the
+    /// last time.
+    pub(super) fn renew(&mut self, other: &Self, pose: &CentredPose) {
+        self.now = other.now;
+        let Some(largest) = self.largest.covariance_in(pose, self.model) else { return };
+        let least = largest / *FRAMES_OF_CENTROID.end() as f64;
+        if self.now.covariance.trace() > largest.trace() {
+            self.largest = self.now;
+        } else if self.now.covariance.trace() < least.trace() {
             self.now.covariance = least;
         }
     }
@@ -103,9 +104,8 @@ impl CommonError {
         if self.largest == self.now {
             return Some(PoseMatrix::zeros());
         }
-        let (model, k) = (self.model, self.model.parameter_count());
+        let model = self.model;
         let beyond = self.largest.covariance_in(pose, model)? - self.now.covariance_in(pose, model)?;
-        let beyond = PoseMatrix::from_fn(|i, j| if i < k && j < k { beyond[(i, j)] } else { 0.0 });
         let axes = (0.5 * (beyond + beyond.transpose())).symmetric_eigen();
         let positive = PoseMatrix::from_diagonal(&axes.eigenvalues.map(|value| value.max(0.0)));
         let change = pose.about_origin(model)? * axes.eigenvectors;
@@ -114,8 +114,7 @@ impl CommonError {
 
     /// Where a point of the body frame was before the outline moved.
     pub(super) fn before(&self, point: &Point2<f64>) -> Point2<f64> {
-        let k = self.model.parameter_count();
-        map_point(&self.model.flow(&(-self.shift).as_slice()[..k], 1.0).into_inner(), point)
+        map_point(&self.way_back(), point)
     }
 
     /// Adds a displacement of the whole outline in the body frame, which later poses are measured against.
@@ -132,16 +131,20 @@ impl CommonError {
 
     /// The pose in which the outline as it is now lies where it would have lain in the pose given before it moved.
     pub(super) fn of_outline_now(&self, pose: &Matrix3<f64>) -> Matrix3<f64> {
+        pose * self.way_back()
+    }
+
+    /// The map of the body frame from where the outline is now to where it was before it moved.
+    fn way_back(&self) -> Matrix3<f64> {
         let k = self.model.parameter_count();
-        pose * self.model.flow(&(-self.shift).as_slice()[..k], 1.0).into_inner()
+        self.model.flow(&(-self.shift).as_slice()[..k], 1.0).into_inner()
     }
 
     /// As the covariance of an error of the body frame, of one that has the outline as it is now: what all poses have in common, and what the outline
     /// has been moved by since the hypotheses began.
     pub(super) fn of_body_frame(&self, pose: &CentredPose) -> Option<PoseMatrix> {
-        let (model, k) = (self.model, self.model.parameter_count());
+        let model = self.model;
         let common = self.largest.covariance_in(pose, model)?;
-        let common = PoseMatrix::from_fn(|i, j| if i < k && j < k { common[(i, j)] } else { 0.0 });
         let change = pose.about_origin(model)?;
         let in_body = moved_covariance(model, &(change * common * change.transpose()), &pose.pose.try_inverse()?)?;
         Some(in_body + self.shift * self.shift.transpose())
@@ -159,6 +162,7 @@ impl CommonError {
 #[cfg(test)]
 mod tests {
     use super::*;
+
     fn reference() -> CentredPose {
         CentredPose { pose: Matrix3::identity(), centroid: Point2::new(0.3, -0.2) }
     }

@@ -29,8 +29,8 @@ impl<const N: usize> InteractingHypotheses<N> {
         self.record_that_outline_moves();
     }
 
-    /// Records that the outline is learnt in poses which others than a constant generator expect, or wrong ones. Poses are counted from where it was before
-    /// from now on, and so is the centroid.
+    /// Records that the outline is learnt in poses which others than a constant generator expect, or wrong ones. Poses are counted from where it was
+    /// before from now on, and so is the centroid.
     pub(super) fn record_that_outline_moves(&mut self) {
         if !self.outline_has_moved {
             (self.outline_has_moved, self.centroid_now) = (true, None);

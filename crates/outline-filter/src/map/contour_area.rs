@@ -46,8 +46,7 @@ fn larger(a: ContourArea, b: ContourArea) -> ContourArea {
 }
 
 impl OutlineMap {
-    /// Goes through the contours that the outline makes, at its offsets from the cells; whether all of them are closed. Cells beyond the last offset
-    /// have none.
+    /// Goes through the contours that the outline makes, at its offsets from the cells as far as they are known; whether all of them are closed.
     fn for_each_contour(&self, offsets: KnownOffsets<'_>, mut each: impl FnMut(ContourArea)) -> bool {
         let (mut cells, mut start) = (0, 0);
         while cells < self.cells.len() && start < self.cells.len() {

@@ -226,7 +226,7 @@ pub(crate) mod family {
     pub(crate) const MOST_TELL: f64 = 0.5;
     /// Share of the square of a displacement that must be left of it in a frame to say something: a hundredth of the displacement. How much pose and
     /// outline take of it is known to some percent, so that of smaller shares a size may be wrong by as much as itself. Of pixels that are 1 to 6 %
-    /// too wide in 300 short or slow recordings 10 more were silently off with a tenth, and of 240 without a fault none with either.
+    /// too wide in 300 short or slow recordings 7 more were silently off with a tenth, and of 100 without a fault none with either.
     pub(crate) const LEFT: f64 = 1e-4;
     /// As that, in variances of the direction of the normals: errors of normals leave some of a motion along the outline, which it does not show...
     pub(crate) const LEFT_PER_NOISE: f64 = 1.0;
