@@ -1,5 +1,4 @@
 //! The identifier of one object, whichever method it is.
-#[cfg(feature = "serde")]
 use std::sync::Arc;
 
 use freeform_curve_fit::Outline;
@@ -20,16 +19,16 @@ use crate::rejection::RejectionCause;
 use crate::warning::Warning;
 use crate::{Pipeline, PipelineSettings};
 
-/// What is known of one object. While it rests in a file it takes no frames, and only how often it was begun anew and whether its motion
-/// changed can be asked for.
+/// What is known of one object. All that have seen nothing yet share what they begin with, as many may wait for their first frame at once.
+/// While one rests in a file it takes no frames, and only how often it was begun anew and whether its motion changed can be asked for.
 #[derive(Debug, Clone)]
 pub(super) enum Identifier {
     /// The paper's identifier on the lines of fitted curves.
-    Adaptive(Box<Pipeline>),
+    Adaptive(Arc<Pipeline>),
     /// The motion filter on the points of the outlines.
-    Filter(Box<FilteredObject>),
+    Filter(Arc<FilteredObject>),
     /// The motion filter, and all frames together for the motion in space.
-    Plane(Box<PlaneObject>),
+    Plane(Arc<PlaneObject>),
     /// A motion filter whose state is in a file.
     #[cfg(feature = "serde")]
     Resting(Arc<RestingFilter>),
@@ -40,13 +39,13 @@ impl Identifier {
     pub(super) fn new(settings: &MethodSettings) -> Result<Self, TrackerError> {
         Ok(match settings {
             MethodSettings::Adaptive(settings) => {
-                Self::Adaptive(Box::new(Pipeline::new(PipelineSettings::clone(settings))?))
+                Self::Adaptive(Arc::new(Pipeline::new(PipelineSettings::clone(settings))?))
             }
             MethodSettings::Filter(settings) => {
-                Self::Filter(Box::new(FilteredObject { filter: MotionFilter::new(*settings)?, last_known: None }))
+                Self::Filter(Arc::new(FilteredObject { filter: MotionFilter::new(*settings)?, last_known: None }))
             }
             MethodSettings::Plane(camera, settings) => {
-                Self::Plane(Box::new(PlaneObject::new(PlaneFilter::new(*camera, *settings)?)))
+                Self::Plane(Arc::new(PlaneObject::new(PlaneFilter::new(*camera, *settings)?)))
             }
         })
     }
@@ -54,7 +53,7 @@ impl Identifier {
     /// Takes the outline seen at a time in seconds.
     pub(super) fn push(&mut self, time: f64, outline: &Outline) -> Step {
         match self {
-            Self::Adaptive(pipeline) => match pipeline.push(time, outline) {
+            Self::Adaptive(pipeline) => match Arc::make_mut(pipeline).push(time, outline) {
                 Ok(result) => {
                     let phase = if result.estimate.is_some() { ObjectPhase::Adapt } else { ObjectPhase::Start };
                     let residual = Some(result.fit.diagnostics().geometric_residual);
@@ -64,8 +63,8 @@ impl Identifier {
                 }
                 Err(error) => Step { rejected_because: Some(RejectionCause::Pipeline(error)), ..Step::default() },
             },
-            Self::Filter(object) => object.push(time, outline),
-            Self::Plane(object) => object.push(time, outline),
+            Self::Filter(object) => Arc::make_mut(object).push(time, outline),
+            Self::Plane(object) => Arc::make_mut(object).push(time, outline),
             #[cfg(feature = "serde")]
             Self::Resting(_) => Step::default(),
         }
@@ -74,8 +73,8 @@ impl Identifier {
     /// Does a part of the work that waits for the next outline, if there is any; whether more is waiting.
     pub(super) fn prepare(&mut self) -> bool {
         match self {
-            Self::Filter(object) => object.filter.prepare(),
-            Self::Plane(object) => object.filter.prepare(),
+            Self::Filter(object) => Arc::make_mut(object).filter.prepare(),
+            Self::Plane(object) => Arc::make_mut(object).filter.prepare(),
             Self::Adaptive(_) => false,
             #[cfg(feature = "serde")]
             Self::Resting(_) => false,
@@ -95,7 +94,7 @@ impl Identifier {
     #[cfg(feature = "serde")]
     pub(super) fn awake(&self) -> Result<Option<Self>, RestingError> {
         match self {
-            Self::Resting(state) => Ok(Some(Self::Filter(Box::new(state.read()?)))),
+            Self::Resting(state) => Ok(Some(Self::Filter(Arc::new(state.read()?)))),
             _ => Ok(None),
         }
     }

@@ -1,4 +1,6 @@
 //! A tracker as bytes and back.
+use std::sync::Arc;
+
 use freeform_estimate::{MotionEstimate, StateFormat};
 use freeform_outline_filter::{FilterSettings, MotionFilter, StateError, state_format};
 use freeform_riccati::CameraScale;
@@ -201,14 +203,14 @@ fn restored_identifier(saved: SavedIdentifier, method: &MethodSettings) -> Resul
             if last_known.is_some_and(|(time, motion)| !(time.is_finite() && motion.is_finite())) {
                 return inconsistent("last known motion");
             }
-            Ok(Identifier::Filter(Box::new(FilteredObject { filter, last_known })))
+            Ok(Identifier::Filter(Arc::new(FilteredObject { filter, last_known })))
         }
         (SavedIdentifier::Adaptive { state }, MethodSettings::Adaptive(settings)) => {
             let pipeline = Pipeline::from_bytes(&state)?;
             if pipeline.settings() != &**settings {
                 return inconsistent("settings of an object");
             }
-            Ok(Identifier::Adaptive(Box::new(pipeline)))
+            Ok(Identifier::Adaptive(Arc::new(pipeline)))
         }
         _ => inconsistent("method of an object"),
     }

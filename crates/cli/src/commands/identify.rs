@@ -25,7 +25,7 @@ use crate::picture_input::PictureInput;
 use crate::progress::Verbosity;
 use crate::reader::{Event, follow};
 
-/// Objects whose states are kept in memory: 25 kB each where outlines are small, up to half a megabyte.
+/// Objects whose states are kept in memory: 60 kB each where outlines are small, up to half a megabyte.
 const STATES_IN_MEMORY: usize = 1024;
 
 /// Where more is found than the motion at the end.
