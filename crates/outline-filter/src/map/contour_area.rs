@@ -62,7 +62,7 @@ impl OutlineMap {
     }
 
     /// Where the outline lies on the normal of a cell, as far as that is known.
-    fn known_place(&self, cell: usize, offsets: KnownOffsets<'_>) -> Point2<f64> {
+    pub(crate) fn known_place(&self, cell: usize, offsets: KnownOffsets<'_>) -> Point2<f64> {
         let at = &self.cells[cell];
         at.centre + offsets.of(cell) * at.normal
     }

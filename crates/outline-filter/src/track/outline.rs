@@ -12,11 +12,12 @@ use crate::{
 };
 
 impl Track {
-    /// The outline as it is known now, image coordinates: one point per cell, in no particular order where the map has grown.
+    /// The outline as it is known now, image coordinates: one point per cell, in no particular order where the map has grown. Cells of which little has
+    /// been seen lie where they were cut: what one point says of an offset may have been measured in a wrong pose.
     pub(crate) fn outline_points(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
         let to_image = self.reference.to_image() * self.belief.pose;
-        let cells = self.map.cells().iter().zip(&self.belief.offsets);
-        cells.map(move |(cell, offset)| map_point(&to_image, &(cell.centre + *offset * cell.normal)))
+        let offsets = self.belief.known_offsets();
+        (0..self.map.cells().len()).map(move |cell| map_point(&to_image, &self.map.known_place(cell, offsets)))
     }
 
     /// The outline as it is known now, in its order, where it was in the first frame.
@@ -30,8 +31,8 @@ impl Track {
     }
 
     fn pieces_by(&self, to_image: &Matrix3<f64>) -> Vec<KnownPiece> {
-        let offsets = &self.belief.offsets;
-        let at = |cell: usize| map_point(to_image, &self.map.outline_at(cell, offsets));
+        let offsets = self.belief.known_offsets();
+        let at = |cell: usize| map_point(to_image, &self.map.known_place(cell, offsets));
         let piece = |(mut chain, closed): (Vec<usize>, bool)| {
             if !self.map.runs_with_normals(&chain) {
                 chain.reverse();
@@ -59,5 +60,33 @@ impl Track {
         let variances = self.map.cells().iter().map(variance);
         let finite = variances.map(|variance| variance.is_finite().then_some(variance));
         finite.reduce(|a, b| Some(f64::max(a?, b?))).flatten().map(|variance| variance.max(0.0).sqrt())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use freeform_riccati::MotionModel;
+
+    use super::*;
+    use crate::{
+        drawn_curves::{outline, polar},
+        measurement::Frame,
+    };
+
+    #[test]
+    fn the_outline_is_known_by_offsets_that_more_than_one_point_has_shown() {
+        let egg = outline(200, |t| polar(1.0 + 0.2 * (2.0 * t).cos(), t));
+        let mut track = Track::begin(MotionModel::Rigid, &egg, 0.0, &mut Frame::default()).expect("a track");
+        let mut place = |information: f64, offset: f64| {
+            track.belief.information.cells.own_mut()[7] = information;
+            track.belief.offsets[7] = offset;
+            (track.outline_points().nth(7).expect("a cell"), track.known_outline().pieces[0].points.clone())
+        };
+        let as_cut = place(1.0, 0.0);
+        assert_eq!(place(1.0, 0.3), as_cut);
+        let (seen, piece) = place(2.0, 0.3);
+        let radius = track.reference.radius;
+        assert!(((seen - as_cut.0).norm() / (0.3 * radius) - 1.0).abs() < 1e-9, "{seen} {radius}");
+        assert!(piece.iter().any(|p| (map_point(&track.belief.pose, p) - seen).norm() < 1e-9));
     }
 }

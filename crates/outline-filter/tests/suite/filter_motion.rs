@@ -70,8 +70,8 @@ fn assert_at_bound(
     let to_bound = root_mean_square(all.iter().map(|r| r.0));
     let to_own = root_mean_square(all.iter().map(|r| r.1));
     assert!(to_bound < limit, "{to_bound} times the bound");
-    // 18 or more numbers of standard deviation 1.
-    assert!((0.5..1.6).contains(&to_own), "intervals hold {to_own} times what they promise");
+    // 18 or more numbers of standard deviation 1. After eight frames what cameras have now and then is not ruled out yet.
+    assert!((0.4..1.6).contains(&to_own), "intervals hold {to_own} times what they promise");
 }
 
 #[test]
@@ -196,8 +196,8 @@ fn the_velocity_of_the_centroid_is_known_with_a_standard_deviation_that_holds() 
         assert!((middle - found.point).norm() < 0.02, "{middle} {}", found.point);
     }
     let mean = squares / runs as f64;
-    // After eight frames the motion might have changed steadily, which deviations allow for.
-    assert!((0.4..1.6).contains(&mean), "{mean}");
+    // After eight frames the motion might have changed steadily, and what cameras have now and then is not ruled out: deviations allow for both.
+    assert!((0.25..1.6).contains(&mean), "{mean}");
 }
 
 #[test]

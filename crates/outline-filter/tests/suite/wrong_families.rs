@@ -156,3 +156,23 @@ fn a_plane_that_a_tilted_camera_looks_at_changes_as_in_perspective() {
         }
     }
 }
+
+/// Before they are told from noise.
+#[test]
+fn pixels_that_are_not_square_are_reckoned_with_from_the_first_frames_that_show_them() {
+    for (direction, stretch) in (0..8).flat_map(|i| [(f64::from(i) * 0.39, 1.06), (f64::from(i) * 0.39, 1.1)]) {
+        let turn = Rotation2::new(direction);
+        for frames in 7..=10 {
+            let stretched = |_, p: Point2<f64>| {
+                let q = turn.inverse() * p;
+                turn * Point2::new(stretch * q.x, q.y)
+            };
+            let (filter, rejected) = rigid(frames, 0.0, stretched);
+            assert!(rejected.is_empty() && filter.wrong_family().is_none(), "{frames} {rejected:?}");
+            let omega = filter.estimate().expect("an estimate").parameters().next().expect("omega");
+            let (value, deviation) = omega.value.zip(omega.standard_deviation).expect("a turn that is seen");
+            let error = (value + 0.5).abs() / deviation;
+            assert!(error < 1.5, "{direction} {stretch}, {frames} frames: {error} deviations of {deviation}");
+        }
+    }
+}
