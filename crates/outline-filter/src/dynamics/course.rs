@@ -113,6 +113,11 @@ impl Course {
         }
     }
 
+    /// Whether the motion changes in ways that are but roughly those of the hypothesis.
+    pub(super) fn changes_at_random(self) -> bool {
+        matches!(self, Self::Accelerating { .. } | Self::ChangingGenerator { .. })
+    }
+
     /// Whether no part of the velocity of the centroid turns with the object, and the motion changes.
     pub(super) fn accelerates(self) -> bool {
         matches!(self, Self::Accelerating { .. } | Self::SteadyChange { turns: false })

@@ -28,6 +28,16 @@ pub(super) struct CentredMeasurement {
     pub(super) root: CentredMatrix,
     /// Error of the reference pose as measured.
     pub(super) deviation: CentredVector,
+    /// Factor of the variance, at least 1, for hypotheses of motions that change at random: that of
+    /// [`PoseMeasurement`](crate::update::PoseMeasurement).
+    pub(super) roughness: f64,
+}
+
+impl CentredMeasurement {
+    /// Numbers of the pose that the frame tells something of.
+    pub(super) fn rank(&self) -> usize {
+        self.root.diagonal().iter().filter(|entry| **entry > 0.0).count()
+    }
 }
 
 /// Comparison of a measurement with a prediction.

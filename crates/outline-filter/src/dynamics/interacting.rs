@@ -228,11 +228,12 @@ impl<const N: usize> InteractingHypotheses<N> {
         let Some(deviation) = solved(&information, &pulled, k) else { return };
         let Some(information) = less_known(information, off) else { return };
         for j in 0..k {
-            let own = information[(j, j)];
+            let own = information[(j, j)] / measured.roughness;
             let variance = if own > 0.0 { (1.0 / own).min(tuning::LARGEST_VARIANCE) } else { tuning::LARGEST_VARIANCE };
             self.pose_variance[j] += tuning::VARIANCE_GAIN * (variance - self.pose_variance[j]);
         }
-        let measurement = CentredMeasurement { root: root_of(&information, k), deviation };
+        let measurement =
+            CentredMeasurement { root: root_of(&information, k), deviation, roughness: measured.roughness };
         let mut logarithms = [f64::NEG_INFINITY; MOST];
         let mut standardised = [None; MOST];
         for (number, hypothesis) in self.hypotheses.iter_mut().enumerate() {

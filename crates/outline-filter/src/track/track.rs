@@ -176,7 +176,7 @@ impl Track {
                 forgotten = self.grow_along(contours, frame);
             }
         }
-        let pose = measured.map(|measured| measured.over(variance));
+        let pose = measured.map(|measured| measured.over(self.noise.effective_variance(), variance));
         let rounding = pose.as_ref().map_or_else(CentredDeviations::zeros, |_| self.rounding_of_pose());
         Outcome { measurement, verdict, innovation, pose, rounding, shift, forgotten, doubt, likelihood }
     }

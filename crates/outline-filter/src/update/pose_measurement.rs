@@ -19,6 +19,9 @@ pub(crate) struct PoseMeasurement {
     pub(crate) information: SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>,
     /// W times the error that the frame asks for.
     pub(crate) pulled: SVector<f64, MAX_PARAMETERS>,
+    /// How many times the variance of the pose hypotheses of motions that change at random reckon with, at least 1: such motions follow them but
+    /// roughly, and of an outline without noise that would be all that poses are off by.
+    pub(crate) roughness: f64,
 }
 
 impl PoseMeasurement {
@@ -51,6 +54,7 @@ impl PoseMeasurement {
                 if i < K && j < K { 0.5 * (information[i][j] + information[j][i]) } else { 0.0 }
             }),
             pulled: SVector::from_fn(|i, _| if i < K { pulled[i] } else { 0.0 }),
+            roughness: 1.0,
         }
     }
 
@@ -60,9 +64,10 @@ impl PoseMeasurement {
         (self.information + before).lu().solve(&self.pulled)
     }
 
-    /// In units of a variance of the noise.
-    pub(crate) fn over(&self, variance: f64) -> Self {
-        Self { information: self.information / variance, pulled: self.pulled / variance }
+    /// Over a variance of the noise, and with the one that motions which change at random are followed with.
+    pub(crate) fn over(&self, variance: f64, of_rough: f64) -> Self {
+        let roughness = (of_rough / variance).max(1.0);
+        Self { information: self.information / variance, pulled: self.pulled / variance, roughness }
     }
 }
 

@@ -23,6 +23,7 @@ mod mask_rounding;
 mod moving_poses;
 mod near_symmetry;
 mod nearly_round;
+mod next_to_no_noise;
 mod partly_seen;
 mod plane;
 mod point_deviations;
