@@ -110,7 +110,7 @@ mod tests {
         let k = MotionModel::Rigid.parameter_count();
         let information = CentredMatrix::from_fn(|i, j| f64::from(u8::from(i == j && i < k)));
         let deviation = CentredVector::from_fn(|i, _| if i == 0 { deviation } else { 0.0 });
-        CentredMeasurement { root: root_of(&information, k), deviation, roughness: 1.0 }
+        CentredMeasurement { root: root_of(&information, k), deviation, noise_inflation: 1.0 }
     }
 
     /// The likelihood of all by which a hypothesis explains a measurement, the share of those that have come to it, and its variance.

@@ -131,10 +131,9 @@ impl<const N: usize> Hypothesis<N> {
     /// As [`update`](Self::update), for K parameters.
     pub(super) fn update_sized<const K: usize>(&mut self, measurement: &CentredMeasurement) -> Option<Innovation> {
         let shaking = self.course.shaking();
-        let roughness = if self.course.changes_at_random() { measurement.roughness } else { 1.0 };
-        let by_factor = 1.0 / (shaking * roughness).sqrt();
-        let root: [[f64; K]; K] =
-            std::array::from_fn(|j| std::array::from_fn(|i| measurement.root[(i, j)] * by_factor));
+        let noise_inflation = if self.course.changes_at_random() { measurement.noise_inflation } else { 1.0 };
+        let scale = 1.0 / (shaking * noise_inflation).sqrt();
+        let root: [[f64; K]; K] = std::array::from_fn(|j| std::array::from_fn(|i| measurement.root[(i, j)] * scale));
         let off: [f64; K] = std::array::from_fn(|i| measurement.deviation[i] - self.mean[i]);
         let (covariance, mean) = (&mut self.covariance.data.0, &mut self.mean.data.0[0]);
         let (root, determinant, pulled, squared) = vectorised(
@@ -166,9 +165,9 @@ impl<const N: usize> Hypothesis<N> {
         }
         // The density of the innovation, without the factor that all hypotheses share.
         let of_shaking = if shaking > 1.0 { K as f64 * shaking.ln() } else { 0.0 };
-        // Along what a frame says nothing of no hypothesis is compared.
-        let of_roughness = if roughness > 1.0 { measurement.rank() as f64 * roughness.ln() } else { 0.0 };
-        let log_likelihood = -0.5 * (determinant.ln() + of_shaking + of_roughness + squared);
+        // Directions that the frame says nothing of do not count.
+        let of_inflation = if noise_inflation > 1.0 { measurement.rank() as f64 * noise_inflation.ln() } else { 0.0 };
+        let log_likelihood = -0.5 * (determinant.ln() + of_shaking + of_inflation + squared);
         Some(Innovation { log_likelihood, standardised })
     }
 }
@@ -245,7 +244,7 @@ mod tests {
         let (mean, covariance) = (SVector::<f64, N>::from_fn(|i, _| number(1000 + i)), spread * spread.transpose());
         let deviation = CentredVector::from_fn(|i, _| number(2000 + i));
         let mut corrected = Hypothesis::<N> { course, mean, covariance };
-        let measurement = CentredMeasurement { root: root_of(&whole, K), deviation, roughness: 1.0 };
+        let measurement = CentredMeasurement { root: root_of(&whole, K), deviation, noise_inflation: 1.0 };
         let found = corrected.update_sized::<K>(&measurement).expect("a correction");
 
         let information = information / course.shaking();
@@ -286,13 +285,13 @@ mod tests {
 
     #[test]
     fn what_a_frame_tells_of_the_pose_counts_for_less_where_the_motion_changes_at_random() {
-        const ROUGHNESS: f64 = 4.0;
+        const INFLATION: f64 = 4.0;
         let (prior, deviation) = (9.0, CentredVector::from_fn(|i, _| if i == 0 { 2.0 } else { 0.0 }));
         // Nothing is told of the third number.
         let information = CentredMatrix::from_fn(|i, j| if i == j && i < 2 { 1.0 } else { 0.0 });
-        let measurement = CentredMeasurement { root: root_of(&information, 3), deviation, roughness: ROUGHNESS };
+        let measurement = CentredMeasurement { root: root_of(&information, 3), deviation, noise_inflation: INFLATION };
         let changing = Course::Accelerating { level: 1.0, rates: true };
-        for (course, noise) in [(changing, ROUGHNESS), (Course::ConstantGenerator, 1.0)] {
+        for (course, noise) in [(changing, INFLATION), (Course::ConstantGenerator, 1.0)] {
             let covariance = SMatrix::<f64, 9, 9>::identity() * prior;
             let mut hypothesis = Hypothesis::<9> { course, mean: SVector::zeros(), covariance };
             let found = hypothesis.update_sized::<3>(&measurement).expect("a correction");

@@ -113,9 +113,9 @@ impl Course {
         }
     }
 
-    /// Whether the motion changes in ways that are but roughly those of the hypothesis.
+    /// Whether accelerations, the generator or the camera change at random.
     pub(super) fn changes_at_random(self) -> bool {
-        matches!(self, Self::Accelerating { .. } | Self::ChangingGenerator { .. })
+        matches!(self, Self::Accelerating { .. } | Self::ChangingGenerator { .. } | Self::Shaken { .. })
     }
 
     /// Whether no part of the velocity of the centroid turns with the object, and the motion changes.

@@ -158,6 +158,11 @@ impl DynamicsFilter {
         of_any_size!(self, hypotheses => hypotheses.widening())
     }
 
+    /// Whether the frames are explained best as those of a camera that shakes.
+    pub(crate) fn shakes(&self) -> bool {
+        of_any_size!(self, hypotheses => hypotheses.shakes())
+    }
+
     /// The states of all hypotheses taken together, that of a constant generator replaced by what is `given` for it, which knows the
     /// outline as well.
     pub(crate) fn combined(&self, given: Option<&Summary>, purpose: Purpose) -> Option<Summary> {

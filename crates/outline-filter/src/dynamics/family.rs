@@ -85,8 +85,9 @@ impl FamilyTests {
         let dependence = self.series.dependence();
         if self.series.frames() < tuning::FEWEST_FRAMES {
             // Too few to find anything; what cameras have now and then is reckoned with as far as they do not rule it out.
+            let none = self.fit(&[]);
             for members in of_pictures {
-                self.add_possible(&mut estimate.moments, &self.fit(&[]), members, &dependence);
+                self.add_possible(&mut estimate.moments, &none, members, &dependence);
             }
             return estimate;
         }

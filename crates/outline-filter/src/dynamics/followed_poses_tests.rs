@@ -121,7 +121,7 @@ impl<'a> Run<'a> {
         let measured = PoseMeasurement {
             information: about_centroid.transpose() * by_centroid * about_centroid,
             pulled: about_centroid.transpose() * (by_centroid * seen),
-            roughness: 1.0,
+            noise_inflation: 1.0,
         };
         filter.update(&measured, &SVector::zeros());
         let stated = filter.combined(None, Purpose::Statement)?;

@@ -28,9 +28,8 @@ pub(super) struct CentredMeasurement {
     pub(super) root: CentredMatrix,
     /// Error of the reference pose as measured.
     pub(super) deviation: CentredVector,
-    /// Factor of the variance, at least 1, for hypotheses of motions that change at random: that of
-    /// [`PoseMeasurement`](crate::update::PoseMeasurement).
-    pub(super) roughness: f64,
+    /// As that of [`PoseMeasurement`](crate::update::PoseMeasurement).
+    pub(super) noise_inflation: f64,
 }
 
 impl CentredMeasurement {

@@ -228,12 +228,12 @@ impl<const N: usize> InteractingHypotheses<N> {
         let Some(deviation) = solved(&information, &pulled, k) else { return };
         let Some(information) = less_known(information, off) else { return };
         for j in 0..k {
-            let own = information[(j, j)] / measured.roughness;
+            let own = information[(j, j)] / measured.noise_inflation;
             let variance = if own > 0.0 { (1.0 / own).min(tuning::LARGEST_VARIANCE) } else { tuning::LARGEST_VARIANCE };
             self.pose_variance[j] += tuning::VARIANCE_GAIN * (variance - self.pose_variance[j]);
         }
         let measurement =
-            CentredMeasurement { root: root_of(&information, k), deviation, roughness: measured.roughness };
+            CentredMeasurement { root: root_of(&information, k), deviation, noise_inflation: measured.noise_inflation };
         let mut logarithms = [f64::NEG_INFINITY; MOST];
         let mut standardised = [None; MOST];
         for (number, hypothesis) in self.hypotheses.iter_mut().enumerate() {
@@ -315,6 +315,11 @@ impl<const N: usize> InteractingHypotheses<N> {
     pub(crate) fn factors(&self) -> CentredDeviations {
         let spread = self.series.spread(self.model.parameter_count());
         CentredDeviations::from_fn(|j, _| spread.get(j).copied().unwrap_or(1.0))
+    }
+
+    /// Whether the frames are explained best as those of a camera that shakes.
+    pub(crate) fn shakes(&self) -> bool {
+        self.shaking > 1.0
     }
 
     /// Mean square of the innovations, at least 1: how much larger than the model's errors are.

@@ -127,7 +127,7 @@ pub(super) fn advance(
     if !predict(settings, track, history, seconds) {
         return None;
     }
-    let gates = Gates::of_new_frame(settings, track, history.widening(), (steady, turns));
+    let gates = Gates::of_new_frame(settings, track, history.widening(track), (steady, turns));
     let (outcome, apart) =
         outcome_with_changes(settings, (track, frame), history, (seconds, &gates), (turns, comparison));
     history.record(&outcome, seconds);
@@ -153,7 +153,7 @@ pub(super) fn advance_again(
     if !predict(settings, track, history, seconds) {
         return None;
     }
-    let gates = Gates::of_accepted_frame(settings, track, history.widening());
+    let gates = Gates::of_accepted_frame(settings, track, history.widening(track));
     let known = (turns, Comparison::NotAsked);
     let (outcome, _) = outcome_with_changes(settings, (track, frame), history, (seconds, &gates), known);
     history.record(&outcome, seconds);

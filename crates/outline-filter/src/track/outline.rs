@@ -12,8 +12,8 @@ use crate::{
 };
 
 impl Track {
-    /// The outline as it is known now, image coordinates: one point per cell, in no particular order where the map has grown. Cells of which little has
-    /// been seen lie where they were cut: what one point says of an offset may have been measured in a wrong pose.
+    /// The outline as it is known now, image coordinates: one point per cell, in no particular order where the map has grown. Cells of which little
+    /// has been seen lie where they were cut: what one point says of an offset may have been measured in a wrong pose.
     pub(crate) fn outline_points(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
         let to_image = self.reference.to_image() * self.belief.pose;
         let offsets = self.belief.known_offsets();
@@ -75,8 +75,8 @@ mod tests {
 
     #[test]
     fn the_outline_is_known_by_offsets_that_more_than_one_point_has_shown() {
-        let egg = outline(200, |t| polar(1.0 + 0.2 * (2.0 * t).cos(), t));
-        let mut track = Track::begin(MotionModel::Rigid, &egg, 0.0, &mut Frame::default()).expect("a track");
+        let oval = outline(200, |t| polar(1.0 + 0.2 * (2.0 * t).cos(), t));
+        let mut track = Track::begin(MotionModel::Rigid, &oval, 0.0, &mut Frame::default()).expect("a track");
         let mut place = |information: f64, offset: f64| {
             track.belief.information.cells.own_mut()[7] = information;
             track.belief.offsets[7] = offset;

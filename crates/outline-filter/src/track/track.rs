@@ -123,6 +123,11 @@ impl Track {
         CentredPose { pose: self.belief.pose, centroid: self.map.centroid() }
     }
 
+    /// Its noise over the least that poses are compared by, (38) in docs/motion-filter.md: at most 1.
+    pub(crate) fn noise_over_comparable(&self) -> f64 {
+        self.noise.sigma / self.view().comparable_noise()
+    }
+
     /// What its outline does not show.
     pub(crate) fn null_directions(&self) -> NullDirections {
         self.map.null_directions(self.belief.model, &self.belief.pose)
@@ -138,6 +143,7 @@ impl Track {
             Err(iterations) => return Outcome::unsolved(FrameMeasurement::unsolved(iterations), gate),
         };
         let variance = view.comparable_noise().powi(2) * self.noise.correlation();
+        let own_variance = self.noise.effective_variance();
         let innovation = self.innovation_of(&proposal, hold.as_ref(), variance);
         let mut likelihood = NegativeLogLikelihood::default();
         if comparison == Comparison::Asked {
@@ -176,7 +182,7 @@ impl Track {
                 forgotten = self.grow_along(contours, frame);
             }
         }
-        let pose = measured.map(|measured| measured.over(self.noise.effective_variance(), variance));
+        let pose = measured.map(|measured| measured.over(own_variance, variance));
         let rounding = pose.as_ref().map_or_else(CentredDeviations::zeros, |_| self.rounding_of_pose());
         Outcome { measurement, verdict, innovation, pose, rounding, shift, forgotten, doubt, likelihood }
     }

@@ -19,9 +19,8 @@ pub(crate) struct PoseMeasurement {
     pub(crate) information: SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>,
     /// W times the error that the frame asks for.
     pub(crate) pulled: SVector<f64, MAX_PARAMETERS>,
-    /// How many times the variance of the pose hypotheses of motions that change at random reckon with, at least 1: such motions follow them but
-    /// roughly, and of an outline without noise that would be all that poses are off by.
-    pub(crate) roughness: f64,
+    /// Factor, at least 1, of the variance of the pose for hypotheses of motions that change at random, (64a) in docs/motion-filter.md.
+    pub(crate) noise_inflation: f64,
 }
 
 impl PoseMeasurement {
@@ -54,7 +53,7 @@ impl PoseMeasurement {
                 if i < K && j < K { 0.5 * (information[i][j] + information[j][i]) } else { 0.0 }
             }),
             pulled: SVector::from_fn(|i, _| if i < K { pulled[i] } else { 0.0 }),
-            roughness: 1.0,
+            noise_inflation: 1.0,
         }
     }
 
@@ -64,10 +63,10 @@ impl PoseMeasurement {
         (self.information + before).lu().solve(&self.pulled)
     }
 
-    /// Over a variance of the noise, and with the one that motions which change at random are followed with.
-    pub(crate) fn over(&self, variance: f64, of_rough: f64) -> Self {
-        let roughness = (of_rough / variance).max(1.0);
-        Self { information: self.information / variance, pulled: self.pulled / variance, roughness }
+    /// Over the effective variance of the noise; `comparable_variance` is that which poses are compared by, (38).
+    pub(crate) fn over(&self, variance: f64, comparable_variance: f64) -> Self {
+        let noise_inflation = (comparable_variance / variance).max(1.0);
+        Self { information: self.information / variance, pulled: self.pulled / variance, noise_inflation }
     }
 }
 

@@ -1,4 +1,4 @@
-//! Outlines whose points have next to no noise, far less than straight cells may leave of a bend.
+//! Outlines whose points have less noise than straight cells may leave of a bend.
 use crate::filter_support::{filter, frames_of, settings};
 use freeform_riccati::MotionModel;
 use freeform_sim_camera::{BuiltInShape, Dynamics, Motion, Settings, Trajectory};
