@@ -143,7 +143,6 @@ impl Track {
             Err(iterations) => return Outcome::unsolved(FrameMeasurement::unsolved(iterations), gate),
         };
         let variance = view.comparable_noise().powi(2) * self.noise.correlation();
-        let own_variance = self.noise.effective_variance();
         let innovation = self.innovation_of(&proposal, hold.as_ref(), variance);
         let mut likelihood = NegativeLogLikelihood::default();
         if comparison == Comparison::Asked {
@@ -182,7 +181,9 @@ impl Track {
                 forgotten = self.grow_along(contours, frame);
             }
         }
-        let pose = measured.map(|measured| measured.over(own_variance, variance));
+        // By the noise that its own points have told of as well.
+        let inflation = self.noise_over_comparable().powi(-2);
+        let pose = measured.map(|measured| measured.over(self.noise.effective_variance(), inflation));
         let rounding = pose.as_ref().map_or_else(CentredDeviations::zeros, |_| self.rounding_of_pose());
         Outcome { measurement, verdict, innovation, pose, rounding, shift, forgotten, doubt, likelihood }
     }

@@ -63,9 +63,8 @@ impl PoseMeasurement {
         (self.information + before).lu().solve(&self.pulled)
     }
 
-    /// Over the effective variance of the noise; `comparable_variance` is that which poses are compared by, (38).
-    pub(crate) fn over(&self, variance: f64, comparable_variance: f64) -> Self {
-        let noise_inflation = (comparable_variance / variance).max(1.0);
+    /// Over the effective variance of the noise, with the factor of (64a).
+    pub(crate) fn over(&self, variance: f64, noise_inflation: f64) -> Self {
         Self { information: self.information / variance, pulled: self.pulled / variance, noise_inflation }
     }
 }
