@@ -172,7 +172,10 @@ fn pixels_that_are_not_square_are_reckoned_with_from_the_first_frames_that_show_
             let omega = filter.estimate().expect("an estimate").parameters().next().expect("omega");
             let (value, deviation) = omega.value.zip(omega.standard_deviation).expect("a turn that is seen");
             let error = (value + 0.5).abs() / deviation;
-            assert!(error < 1.5, "{direction} {stretch}, {frames} frames: {error} deviations of {deviation}");
+            assert!(
+                error < 1.5 && deviation < 0.06,
+                "{direction} {stretch}, {frames} frames: {error} deviations of {deviation}"
+            );
         }
     }
 }
