@@ -123,6 +123,17 @@ impl Track {
         CentredPose { pose: self.belief.pose, centroid: self.map.centroid() }
     }
 
+    /// A pose over the noise, which its own points have told of as well. Round outlines have what is off alike in all directions: what cells leave of
+    /// them is no less for being many, so that they count for no more than what they are compared by.
+    fn over_noise(&self, measured: &PoseMeasurement) -> PoseMeasurement {
+        let (variance, inflation) = (self.noise.effective_variance(), self.noise_over_comparable().powi(-2));
+        if self.turn_is_unseen() {
+            measured.over(variance * inflation, 1.0)
+        } else {
+            measured.over(variance, inflation)
+        }
+    }
+
     /// Its noise over the least that poses are compared by, (38) in docs/motion-filter.md: at most 1.
     pub(crate) fn noise_over_comparable(&self) -> f64 {
         self.noise.sigma / self.view().comparable_noise()
@@ -181,9 +192,7 @@ impl Track {
                 forgotten = self.grow_along(contours, frame);
             }
         }
-        // By the noise that its own points have told of as well.
-        let inflation = self.noise_over_comparable().powi(-2);
-        let pose = measured.map(|measured| measured.over(self.noise.effective_variance(), inflation));
+        let pose = measured.map(|measured| self.over_noise(&measured));
         let rounding = pose.as_ref().map_or_else(CentredDeviations::zeros, |_| self.rounding_of_pose());
         Outcome { measurement, verdict, innovation, pose, rounding, shift, forgotten, doubt, likelihood }
     }
