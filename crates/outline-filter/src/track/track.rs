@@ -123,8 +123,8 @@ impl Track {
         CentredPose { pose: self.belief.pose, centroid: self.map.centroid() }
     }
 
-    /// A pose over the noise, which its own points have told of as well. Round outlines have what is off alike in all directions: what cells leave of
-    /// them is no less for being many, so that they count for no more than what they are compared by.
+    /// A pose over the noise, which its own points have told of as well, by (64a) in docs/motion-filter.md. What cells leave of an outline that shows no
+    /// turn is off alike in all directions.
     fn over_noise(&self, measured: &PoseMeasurement) -> PoseMeasurement {
         let (variance, inflation) = (self.noise.effective_variance(), self.noise_over_comparable().powi(-2));
         if self.turn_is_unseen() {
