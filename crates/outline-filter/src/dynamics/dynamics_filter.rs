@@ -158,9 +158,9 @@ impl DynamicsFilter {
         of_any_size!(self, hypotheses => hypotheses.widening())
     }
 
-    /// Whether the frames are explained best as those of a camera that shakes.
-    pub(crate) fn shakes(&self) -> bool {
-        of_any_size!(self, hypotheses => hypotheses.shakes())
+    /// Whether the frames are explained best by a motion or a camera that changes at random.
+    pub(crate) fn changes_at_random(&self) -> bool {
+        of_any_size!(self, hypotheses => hypotheses.changes_at_random())
     }
 
     /// The states of all hypotheses taken together, that of a constant generator replaced by what is `given` for it, which knows the

@@ -317,9 +317,9 @@ impl<const N: usize> InteractingHypotheses<N> {
         CentredDeviations::from_fn(|j, _| spread.get(j).copied().unwrap_or(1.0))
     }
 
-    /// Whether the frames are explained best as those of a camera that shakes.
-    pub(crate) fn shakes(&self) -> bool {
-        self.shaking > 1.0
+    /// Whether the frames are explained best by a motion or a camera that changes at random.
+    pub(crate) fn changes_at_random(&self) -> bool {
+        self.shaking > 1.0 || self.weights().most_probable() == Dynamics::Accelerating
     }
 
     /// Mean square of the innovations, at least 1: how much larger than the model's errors are.

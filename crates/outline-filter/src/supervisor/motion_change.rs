@@ -6,7 +6,7 @@ use nalgebra::SVector;
 use super::settings::FilterSettings;
 use crate::{
     belief::{StateMatrix, StateVector},
-    dynamics::{Dynamics, DynamicsFilter},
+    dynamics::DynamicsFilter,
     prediction::ByKind,
     track::{Outcome, Track},
     tuning::{motion_change as tuning, statement::REACH},
@@ -58,13 +58,12 @@ impl MotionHistory {
         self.dynamics.as_ref().map(DynamicsFilter::memory)
     }
 
-    /// By how many times larger the errors of the frames of a track are than the model's, such as those of a camera that shakes: these are no change of
-    /// the motion.
+    /// By how many times larger the errors of the frames of a track are than the model's, such as those of a camera that shakes: these are no change
+    /// of the motion.
     pub(super) fn widening(&self, track: &Track) -> f64 {
         let Some(dynamics) = &self.dynamics else { return 1.0 };
         // Those of a constant motion are told by the noise of the points, and compared by what may be more.
-        let changes = dynamics.weights().most_probable() == Dynamics::Accelerating || dynamics.shakes();
-        let share = if changes { 1.0 } else { track.noise_over_comparable() };
+        let share = if dynamics.changes_at_random() { 1.0 } else { track.noise_over_comparable() };
         (dynamics.widening() * share * share).max(1.0)
     }
 

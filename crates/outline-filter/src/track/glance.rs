@@ -16,8 +16,7 @@ impl Track {
         let null = self.null_directions();
         let hold = hold(&self.belief, &self.map, &null);
         let proposal = view.solve(frame, &null, hold.as_ref(), Linearisations::Once).ok()?;
-        let variance = view.comparable_noise().powi(2) * self.noise.correlation();
-        let innovation = self.innovation_of(&proposal, hold.as_ref(), variance).squared;
+        let innovation = self.innovation_of(&proposal, hold.as_ref(), self.comparable_variance()).squared;
         let (measurement, _) = view.compare(frame, &proposal, innovation, self.reference.radius);
         let wide = Gate {
             smallest_agreement: PARTLY_THERE * gate.smallest_agreement,

@@ -123,8 +123,8 @@ impl Track {
         CentredPose { pose: self.belief.pose, centroid: self.map.centroid() }
     }
 
-    /// A pose over the noise, which its own points have told of as well, by (64a) in docs/motion-filter.md. What cells leave of an outline that shows no
-    /// turn is off alike in all directions.
+    /// A pose over the noise, which its own points have told of as well, by (64a) in docs/motion-filter.md. What cells leave of an outline that shows
+    /// no turn is off alike in all directions.
     fn over_noise(&self, measured: &PoseMeasurement) -> PoseMeasurement {
         let (variance, inflation) = (self.noise.effective_variance(), self.noise_over_comparable().powi(-2));
         if self.turn_is_unseen() {
@@ -132,6 +132,11 @@ impl Track {
         } else {
             measured.over(variance, inflation)
         }
+    }
+
+    /// Variance that poses are compared by, (38) in docs/motion-filter.md.
+    pub(super) fn comparable_variance(&self) -> f64 {
+        self.view().comparable_noise().powi(2) * self.noise.correlation()
     }
 
     /// Its noise over the least that poses are compared by, (38) in docs/motion-filter.md: at most 1.
@@ -153,7 +158,7 @@ impl Track {
             Ok(proposal) => proposal,
             Err(iterations) => return Outcome::unsolved(FrameMeasurement::unsolved(iterations), gate),
         };
-        let variance = view.comparable_noise().powi(2) * self.noise.correlation();
+        let variance = self.comparable_variance();
         let innovation = self.innovation_of(&proposal, hold.as_ref(), variance);
         let mut likelihood = NegativeLogLikelihood::default();
         if comparison == Comparison::Asked {

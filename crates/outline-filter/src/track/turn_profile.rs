@@ -142,9 +142,9 @@ impl Track {
     /// promise too little.
     fn turn_to_be_told(&self, outcome: &Outcome, points: usize) -> Option<f64> {
         let direction = self.turn_about_centroid()?;
-        // In units of the noise that poses are compared by.
-        let share = self.noise_over_comparable();
-        let of_turn = direction.dot(&(outcome.pose?.information * direction)) * share * share;
+        let pose = outcome.pose?;
+        // Over the variance that poses are compared by.
+        let of_turn = direction.dot(&(pose.information * direction)) / pose.noise_inflation;
         // Of more points only so many are compared.
         let kept = points as f64 / points.div_ceil(ENOUGH_POINTS).max(1) as f64;
         let of_turn = of_turn * kept / points.max(1) as f64;

@@ -2,7 +2,8 @@
 
 /// The map: cells along the outline, cut from points.
 pub(crate) mod map {
-    /// Points that must have shown the offset of a cell for the centroid and the known outline to count on it: one alone may have been measured in a wrong pose.
+    /// Points that must have shown the offset of a cell for the centroid and the known outline to count on it: one alone may have been measured in a
+    /// wrong pose.
     pub(crate) const SEEN: f64 = 1.5;
     /// Frames, powers of two among them, after which the centroid is placed anew by what they have told of the outline. After the last its error is
     /// an eighth of that by the noise of one frame.
