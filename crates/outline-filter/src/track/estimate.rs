@@ -7,7 +7,8 @@ use super::Track;
 use crate::{
     belief::{StateMatrix, StateVector, scaled_inverse},
     dynamics::{
-        CentredDeviations, Dynamics, DynamicsFilter, Summary, UnmodelledEstimate, centred_order, is_beyond_linear,
+        CentredDeviations, CentredPose, Dynamics, DynamicsFilter, Summary, UnmodelledEstimate, centred_order,
+        is_beyond_linear,
     },
     map::{CLOCKWISE, NullDirection},
     prediction::PoseMatrix,
@@ -310,16 +311,18 @@ impl Track {
         let (model, radius) = (self.belief.model, self.reference.radius);
         let to_image = self.reference.to_image();
         let Some(inverse) = to_image.try_inverse() else { return blind };
+        let about_centroid = CentredPose { pose: *pose, centroid: self.map.centroid() }.about_centroid(model);
         for null in self.map.null_directions(model, pose) {
             let generator = to_image * model.generator(&null.direction[..model.parameter_count()]) * inverse;
             let direction = model.parameters_of(&generator);
+            // Over the largest part about the centroid: about an origin far away the velocity there would be that, beside which a turn is little.
+            let largest = (about_centroid * SVector::<f64, MAX_PARAMETERS>::from(null.direction)).amax();
             // In units of the object, so that lengths and angles compare.
             let sizes = direction.iter().zip(model.parameter_kinds()).map(|(entry, kind)| match kind {
                 ParameterKind::Rate => entry.abs(),
                 ParameterKind::Velocity => entry.abs() / radius,
                 ParameterKind::Perspective => entry.abs() * radius,
             });
-            let largest = sizes.clone().fold(0.0, f64::max);
             let turns = self.turn_is_unseen();
             for ((blind, size), kind) in blind.iter_mut().zip(sizes).zip(model.parameter_kinds()) {
                 let takes_all = *kind == ParameterKind::Velocity || model > MotionModel::Similarity;
