@@ -160,6 +160,7 @@ impl ContourNoise {
 
 /// Whether the frames that a map is cut from must have cells in common.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum CellsInCommon {
     /// Not where there is one alone, or a constant motion relates them: each may show cells of its own.
     NotNeeded,
@@ -187,11 +188,11 @@ impl Resolution {
         }
         // Exact points have no noise; the floor keeps weights finite and is far below what any number can tell.
         let sigma = (variance / f64::max(count, 1.0)).sqrt().max(crate::tuning::noise::SMALLEST);
-        let points_per_cell = match in_common {
-            CellsInCommon::NotNeeded => tuning::POINTS_PER_CELL,
-            CellsInCommon::Needed => tuning::POINTS_PER_COMMON_CELL,
+        let most = match in_common {
+            CellsInCommon::NotNeeded => count / tuning::POINTS_PER_CELL,
+            CellsInCommon::Needed => f64::min(count, points as f64) / tuning::POINTS_PER_COMMON_CELL,
         };
-        let finest = (count / points_per_cell).clamp(tuning::FEWEST_OF_FINEST, tuning::MOST_CELLS);
+        let finest = most.clamp(tuning::FEWEST_OF_FINEST, tuning::MOST_CELLS);
         let plenty = (tuning::LEAST_NOISE_PER_CELL * sigma).max(tuning::PLENTY_PER_CELL * length / points as f64);
         let spacing =
             plenty.min(tuning::NOISE_PER_CELL * sigma).max(length / finest).min(length / tuning::CELLS_PER_LENGTH);

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     map::{CellsInCommon, TurnEvent, TurnEvidence},
-    measurement::Frame,
+    measurement::{Frame, NegativeLogLikelihood},
     search::Landmarks,
     track::{PlacedFrame, Track},
     tuning::remapping as tuning,
@@ -85,24 +85,41 @@ impl MotionFilter {
         if self.may_change() { CellsInCommon::Needed } else { CellsInCommon::NotNeeded }
     }
 
+    /// Whether the frames kept must have cells in common: where the motion may change, and where they were not found in the poses that the motion of a
+    /// track has, which is not seen to change yet. Cut along points placed by that, an outline would be smeared.
+    fn cells_in_common_of_kept(&mut self) -> CellsInCommon {
+        let Some(track) = self.track.as_ref().filter(|_| !self.may_change()) else { return CellsInCommon::Needed };
+        let (mut by_motion, mut found) = <[NegativeLogLikelihood; 2]>::default().into();
+        for (moved, as_found) in self.window.by_motion(track).iter().zip(&self.window.as_found()) {
+            let of_frame = track.compared(moved.outline, &[moved.pose, as_found.pose], &mut self.frame);
+            by_motion.add(&of_frame[0]);
+            found.add(&of_frame[1]);
+        }
+        let parameters = self.window.len() * track.model().parameter_count();
+        let apart = by_motion.is_worse_by_fit(tuning::FOUND_ELSEWHERE * parameters as f64, &found);
+        if apart { CellsInCommon::Needed } else { CellsInCommon::NotNeeded }
+    }
+
     /// Puts the points of the first frames in order, for the hypothesis of a turn, after so many cuts, for a map to be cut along them: where there are
     /// rivals, after the next frame.
     pub(super) fn place(&mut self, turn: f64, cuts: usize) -> Remapping {
-        let Some(track) = &self.track else { return Remapping::Idle };
         let hypotheses = 1 + self.turn_hypotheses.followed().count();
         if hypotheses > 1 && kept_once_measured(self.window.len(), hypotheses) > tuning::MOST_KEPT {
             return Remapping::Idle;
         }
-        let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns_of_kept() };
-        let frames = remapper.placed(track, self.may_change());
+        let in_common = self.cells_in_common_of_kept();
+        let Some(track) = &self.track else { return Remapping::Idle };
+        let frames = match in_common {
+            CellsInCommon::NotNeeded => self.window.by_motion(track),
+            CellsInCommon::Needed => self.window.as_found(),
+        };
         let Some(runs) = track.points_along(&frames, 1, &mut self.frame) else { return Remapping::Idle };
-        let placed = Box::new(Placed { runs, turn, cuts });
+        let placed = Box::new(Placed { runs, turn, cuts, in_common });
         if hypotheses == 1 { Remapping::Due(Due::Cutting(placed)) } else { Remapping::Placed(placed) }
     }
 
     /// Cuts the map anew along points in order.
-    pub(super) fn cut(&mut self, Placed { runs, turn, cuts }: Placed) -> Remapping {
-        let in_common = self.cells_in_common();
+    pub(super) fn cut(&mut self, Placed { runs, turn, cuts, in_common }: Placed) -> Remapping {
         let placed = self.track.as_ref().zip(self.window.first());
         let cut = placed.and_then(|(track, first)| track.recut_along(runs, first, in_common, &mut self.frame));
         cut.map_or(Remapping::Idle, |track| Remapping::Drafted(Box::new(Draft { track, turn, cuts: cuts + 1 })))
@@ -125,7 +142,7 @@ impl MotionFilter {
     /// Takes so many more of the frames kept on the new cells, at most.
     pub(super) fn take_kept(&mut self, remapped: Remapped, most: usize) -> Option<Remapped> {
         let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns_of_kept() };
-        let frames = remapper.placed(&remapped.track, false);
+        let frames = remapper.window.by_motion(&remapped.track);
         let next = remapped.frames_taken();
         let end = next.saturating_add(most).min(frames.len());
         remapper.taken(remapped, frames.get(next.checked_sub(1)?..end)?, &mut self.frame)
@@ -142,7 +159,7 @@ impl MotionFilter {
         let in_common = self.cells_in_common();
         let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns_of_kept() };
         let frame = &mut self.frame;
-        let frames = remapper.placed(&present.track, false);
+        let frames = remapper.window.by_motion(&present.track);
         rivals.retain(|(turn, _)| self.turn_hypotheses.followed().any(|(of, _)| of == *turn));
         let mut waiting = self.turn_hypotheses.followed().filter(|(turn, _)| rivals.iter().all(|(of, _)| of != turn));
         let (next, is_last) = (waiting.next(), waiting.next().is_none());
@@ -233,11 +250,6 @@ struct Remapper<'a> {
 }
 
 impl Remapper<'_> {
-    /// The frames kept, where they are cut from; `changes` tells whether the motion of the track has been another in them.
-    fn placed(&self, track: &Track, changes: bool) -> Vec<PlacedFrame<'_>> {
-        if changes { self.window.as_found() } else { self.window.by_motion(track) }
-    }
-
     /// A rival of a track that was begun anew, at the first frame on the same cells: each of its own would be as many times the work, and a finer
     /// one would win by that alone. Where they have not begun alike it has cells of its own all the same.
     fn on_map_of(
@@ -246,7 +258,7 @@ impl Remapper<'_> {
         (rival, in_common): (&Track, CellsInCommon),
         buffers: &mut Frame,
     ) -> Option<Remapped> {
-        let frames = self.placed(rival, false);
+        let frames = self.window.by_motion(rival);
         let begun = begun.with_motion_of(rival).or_else(|| {
             let mut begun = rival.recut(&frames, (1, in_common), buffers)?;
             begun.begin_as(rival, frames.first()?.outline, buffers);

@@ -7,6 +7,7 @@ use super::{motion_change::MotionHistory, taken_ahead::TakenAhead};
 #[cfg(feature = "serde")]
 use crate::track::SavedCells;
 use crate::{
+    map::CellsInCommon,
     track::{PlacedFrame, Track},
     tuning::remapping as tuning,
 };
@@ -65,6 +66,8 @@ pub(super) struct Placed {
     pub(super) turn: f64,
     /// Cuts before.
     pub(super) cuts: usize,
+    /// Whether they have been placed where they were found, and not by a constant motion.
+    pub(super) in_common: CellsInCommon,
 }
 
 /// A track of cells cut anew.
