@@ -281,6 +281,23 @@ fn a_circle_at_rest_far_from_the_origin_shows_the_velocity_of_its_centroid_thoug
     }
 }
 
+#[test]
+fn a_circle_shows_no_turn_however_many_radii_it_is_from_the_origin() {
+    let motion = RigidMotion { omega: 0.0, b1: 0.4, b2: -0.2 };
+    let frames = frames_of(BuiltInShape::Circle, motion, settings(20, 3));
+    for distance in [10.0, 100.0, 1e3, 1e4] {
+        let mut run = filter(MotionModel::Rigid);
+        for frame in &frames {
+            let moved = frame.outline.points().map(|p| p + Vector2::new(0.6, -0.8) * distance).collect();
+            run.step(frame.time, &Outline::closed(moved).expect("an outline")).expect("increasing times");
+            assert!(run.estimate().is_none_or(|_| !observable(&run)[0]), "{distance}, frame {}", frame.index);
+        }
+        let found = run.velocity().expect("known");
+        let error = found.velocity - Vector2::new(0.4, -0.2);
+        assert!(error.norm() < 5.0 * found.standard_deviations().norm(), "{distance}: {found:?}");
+    }
+}
+
 /// What of an outline lies left of `edge`.
 fn left_of(edge: f64, outline: &Outline) -> Option<Outline> {
     let points: Vec<Point2<f64>> = outline.points().copied().collect();
