@@ -116,6 +116,16 @@ impl OutlineMap {
         along.abs() > tuning::BEYOND_END * self.spacing && (known == number || along * to_known < 0.0)
     }
 
+    /// Whether most cells look elsewhere than their neighbours, so that they are too few to show the outline.
+    pub(crate) fn bends_from_cell_to_cell(&self) -> bool {
+        let of_cell = |cell: &Cell| {
+            let turns = cell.neighbours.map(|n| cell.normal.angle(&self.cells[n].normal));
+            0.5 * (turns[0] + turns[1])
+        };
+        let turn = super::medians::median(&mut self.cells.iter().map(of_cell).collect::<Vec<_>>());
+        turn.is_some_and(|turn| turn > tuning::BENT)
+    }
+
     /// How far a bent outline lies from the straight cells, in the median: what is left to be noise where the points have none.
     pub(crate) fn sagitta(&self) -> f64 {
         let bends = self.cells.iter().map(|cell| {
@@ -164,8 +174,10 @@ impl ContourNoise {
 pub(crate) enum CellsInCommon {
     /// Not where there is one alone, or a constant motion relates them: each may show cells of its own.
     NotNeeded,
-    /// They tell how the motion changes: a pose that has no cells in common with those before is where it was expected.
-    Needed,
+    /// They tell how the motion changes: a pose that has no cells in common with those before is where it was expected. Every frame shows nearly all.
+    InEveryFrame,
+    /// As that, of an outline that so few cells do not show: they are more, of which every frame shows some.
+    InSomeFrames,
 }
 
 impl Resolution {
@@ -190,7 +202,8 @@ impl Resolution {
         let sigma = (variance / f64::max(count, 1.0)).sqrt().max(crate::tuning::noise::SMALLEST);
         let most = match in_common {
             CellsInCommon::NotNeeded => count / tuning::POINTS_PER_CELL,
-            CellsInCommon::Needed => f64::min(count, points as f64) / tuning::POINTS_PER_COMMON_CELL,
+            CellsInCommon::InEveryFrame => f64::min(count, points as f64) / tuning::POINTS_PER_COMMON_CELL,
+            CellsInCommon::InSomeFrames => count / tuning::POINTS_PER_FINER_CELL,
         };
         let finest = most.clamp(tuning::FEWEST_OF_FINEST, tuning::MOST_CELLS);
         let plenty = (tuning::LEAST_NOISE_PER_CELL * sigma).max(tuning::PLENTY_PER_CELL * length / points as f64);

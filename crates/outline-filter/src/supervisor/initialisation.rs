@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     map::{CellsInCommon, TurnEvent, TurnEvidence},
-    measurement::{Frame, NegativeLogLikelihood},
+    measurement::Frame,
     search::Landmarks,
     track::{PlacedFrame, Track},
     tuning::remapping as tuning,
@@ -82,22 +82,17 @@ impl MotionFilter {
 
     /// Whether frames must have cells in common that are cut from them.
     fn cells_in_common(&self) -> CellsInCommon {
-        if self.may_change() { CellsInCommon::Needed } else { CellsInCommon::NotNeeded }
+        if self.may_change() { CellsInCommon::InEveryFrame } else { CellsInCommon::NotNeeded }
     }
 
-    /// Whether the frames kept must have cells in common: where the motion may change, and where they were not found in the poses that the motion of a
-    /// track has, which is not seen to change yet. Cut along points placed by that, an outline would be smeared.
+    /// As [`cells_in_common`](Self::cells_in_common), of the frames kept: also where they show that the motion changes, before it is seen to.
     fn cells_in_common_of_kept(&mut self) -> CellsInCommon {
-        let Some(track) = self.track.as_ref().filter(|_| !self.may_change()) else { return CellsInCommon::Needed };
-        let (mut by_motion, mut found) = <[NegativeLogLikelihood; 2]>::default().into();
-        for (moved, as_found) in self.window.by_motion(track).iter().zip(&self.window.as_found()) {
-            let of_frame = track.compared(moved.outline, &[moved.pose, as_found.pose], &mut self.frame);
-            by_motion.add(&of_frame[0]);
-            found.add(&of_frame[1]);
-        }
-        let parameters = self.window.len() * track.model().parameter_count();
-        let apart = by_motion.is_worse_by_fit(tuning::FOUND_ELSEWHERE * parameters as f64, &found);
-        if apart { CellsInCommon::Needed } else { CellsInCommon::NotNeeded }
+        let Some(track) = self.track.as_ref().filter(|_| !self.may_change()) else {
+            return CellsInCommon::InEveryFrame;
+        };
+        let [by_motion, as_found] = [self.window.by_motion(track), self.window.as_found()];
+        let moves_otherwise = track.explains_better(&as_found, &by_motion, &mut self.frame);
+        if moves_otherwise { CellsInCommon::InEveryFrame } else { CellsInCommon::NotNeeded }
     }
 
     /// Puts the points of the first frames in order, for the hypothesis of a turn, after so many cuts, for a map to be cut along them: where there are
@@ -111,7 +106,7 @@ impl MotionFilter {
         let Some(track) = &self.track else { return Remapping::Idle };
         let frames = match in_common {
             CellsInCommon::NotNeeded => self.window.by_motion(track),
-            CellsInCommon::Needed => self.window.as_found(),
+            CellsInCommon::InEveryFrame | CellsInCommon::InSomeFrames => self.window.as_found(),
         };
         let Some(runs) = track.points_along(&frames, 1, &mut self.frame) else { return Remapping::Idle };
         let placed = Box::new(Placed { runs, turn, cuts, in_common });

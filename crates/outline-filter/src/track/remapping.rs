@@ -7,7 +7,7 @@ use super::Track;
 use crate::{
     belief::EarlierPoses,
     map::{CellPoint, CellsInCommon, Contour, has_common_places},
-    measurement::{Frame, Pass},
+    measurement::{Frame, NegativeLogLikelihood, Pass},
     tuning::remapping as tuning,
 };
 
@@ -35,6 +35,23 @@ impl Track {
         let mut placed: Vec<_> = placed.collect();
         placed.reverse();
         placed
+    }
+
+    /// Whether frames are explained better in the poses that they were found in than in those of a constant motion, by more than the number of the poses
+    /// explains: an outline cut along points that were placed by that motion would be smeared.
+    pub(crate) fn explains_better(
+        &self,
+        as_found: &[PlacedFrame<'_>],
+        by_motion: &[PlacedFrame<'_>],
+        buffers: &mut Frame,
+    ) -> bool {
+        let mut sums = [NegativeLogLikelihood::default(); 2];
+        for (found, moved) in as_found.iter().zip(by_motion) {
+            let of_frame = self.compared(found.outline, &[found.pose, moved.pose], buffers);
+            sums.iter_mut().zip(&of_frame).for_each(|(sum, of_frame)| sum.add(of_frame));
+        }
+        let parameters = as_found.len() * self.model().parameter_count();
+        sums[1].is_worse_by_fit(tuning::FOUND_ELSEWHERE * parameters as f64, &sums[0])
     }
 
     /// A track of the same body frame with cells cut from every frame out of `stride`, which are those that this one has taken, and all
@@ -94,11 +111,17 @@ impl Track {
         in_common: CellsInCommon,
         buffers: &mut Frame,
     ) -> Option<Self> {
-        let contours = runs.into_iter().map(|(run, closed)| Contour::new(run, closed));
+        let contours: Vec<_> = runs.into_iter().map(|(run, closed)| Contour::new(run, closed)).collect();
         buffers.load(first, self.reference);
         let least_noise = (tuning::LEAST_NOISE * self.noise.sigma).max(self.noise.rounding().of_point());
-        let of = (self.belief.model, self.reference);
-        let track = Self::draft(of, self.first_pose.pose, contours.collect(), (least_noise, in_common), buffers)?;
+        let draft = |contours, in_common, buffers: &Frame| {
+            let of = (self.belief.model, self.reference);
+            Self::draft(of, self.first_pose.pose, contours, (least_noise, in_common), buffers)
+        };
+        let mut track = draft(contours.clone(), in_common, buffers)?;
+        if in_common == CellsInCommon::InEveryFrame && track.map.bends_from_cell_to_cell() {
+            track = draft(contours, CellsInCommon::InSomeFrames, buffers)?;
+        }
         // Through points that do not lie on one line, as where the frames do not show the same, a contour runs to and fro.
         let is_longer = track.map.length() > tuning::LONGEST * self.map.length();
         if track.turn_is_unseen() || is_longer && self.map.cells().len() >= tuning::CELLS_OF_LENGTH {

@@ -25,6 +25,11 @@ pub(crate) mod map {
     /// Points of one frame for each cell, of cells that several frames must have in common, so that each of them shows nearly every cell. With four times
     /// as many cells, of sixteen frames, a frame shows a quarter of them; poses with little noise were up to thirty deviations off then.
     pub(crate) const POINTS_PER_COMMON_CELL: f64 = 1.0;
+    /// Points of all frames for each cell where so few cells do not show the outline...
+    pub(crate) const POINTS_PER_FINER_CELL: f64 = 4.0;
+    /// ...as their normals turn by more than this from cell to cell, in rad, in the median: gears with five points a tooth have 0.3 to 0.45 then, and poses
+    /// on them two solutions; smooth outlines of 80 points have 0.02 to 0.2.
+    pub(crate) const BENT: f64 = 0.25;
     /// Most cells of the first frame, which bounds the work of a frame.
     pub(crate) const MOST_CELLS: f64 = 800.0;
     /// An outline is cut into so many cells at least, so that it has sides.
