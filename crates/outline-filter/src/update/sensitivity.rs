@@ -107,7 +107,12 @@ impl Sensitivity {
         // The estimates move as such residuals would move them.
         let right =
             SMatrix::<f64, STATE, UNMODELLED>::from_fn(|i, l| if i < S { repeats * sums.right[i][l] } else { 0.0 });
-        if let Some(steps) = scaled_solution(marginal, &right, K) {
+        // So many frames correct what they have found together, and no more: each of them as much as the one would take it beyond.
+        let mut with_all = *marginal;
+        for (i, j) in (0..K).flat_map(|i| (0..K).map(move |j| (i, j))) {
+            with_all[(i, j)] += (repeats - 1.0) * measured.information[(i, j)];
+        }
+        if let Some(steps) = scaled_solution(&with_all, &right, K) {
             self.move_offsets::<S>(with, &steps, &left);
             for l in 0..UNMODELLED {
                 (0..S).for_each(|i| self.state[(i, l)] += steps[(i, l)]);
@@ -153,7 +158,7 @@ impl Sensitivity {
                             OfCell { with: *with, before: *before, own, right: *right, coupling, added: &added };
                         *left = sums
                             .add(&whole, taken_in.as_slice(), &of_pose, &of_cell)
-                            .map(|l| l * (repeats * own / with));
+                            .map(|l| l * (repeats * own / (before + repeats * own)));
                     }
                 }
             },
