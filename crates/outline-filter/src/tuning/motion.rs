@@ -88,8 +88,9 @@ pub(crate) mod dynamics {
     pub(crate) const LEVELS: [f64; 9] = [1e-8, 1e-5, 1e-2, 0.3, 1e1, 3e2, 1e4, 3e5, 1e7];
     /// Steps that a density of one remembers; others, by its sixth root as many times (the gain of a Kalman filter of a random jerk).
     pub(crate) const MEMORY: f64 = 2.0;
-    /// As these, where the velocity of the centroid alone changes.
-    pub(crate) const LEVELS_OF_VELOCITY: [f64; 2] = [1e-7, 1e-2];
+    /// As these, where the velocity of the centroid alone changes: from what falls while it spins to what a spring shakes. With the first two alone what
+    /// moved to and fro without turning was taken to turn to and fro as well: its omega had deviations twelve times as large.
+    pub(crate) const LEVELS_OF_VELOCITY: [f64; 5] = [1e-7, 1e-2, 1e1, 1e4, 1e7];
     /// As these, where it turns with the object. Of a body that turns by a small angle from frame to frame the others say nearly the same.
     pub(crate) const LEVELS_OF_GENERATOR: [f64; 4] = [1e-5, 1e-2, 1e1, 1e4];
     /// How far the point of an object that runs straight may be from its centroid, in RMS radii, as a deviation: noise, hidden arcs, and bodies that are
