@@ -104,6 +104,11 @@ pub enum Warning {
     },
     /// A straight part of the outline stood still, or moved slowly, while one rigid motion explained the rest: it is left out.
     StandingEdge(StandingEdge),
+    /// A part of the outline did not move with the rest, whose motion is stated.
+    PartDisagrees {
+        /// Mean share of the points of a frame that lie off the known outline together with their neighbours, 0.08 to 1.
+        share: f64,
+    },
     /// Other angular velocities explain the outlines as well.
     Aliases {
         /// These, in rad/s, nearest to zero first.
@@ -158,6 +163,7 @@ impl Warning {
             Self::TooManyRejected { .. } | Self::Lost { .. } | Self::Reacquiring { .. } => 1,
             Self::OfTwoFrames | Self::Ambiguous(_) | Self::TwoPlanes(_) | Self::AmbiguousCorrespondence { .. } => 2,
             Self::WrongFamily { .. } | Self::PlaneMisfit { .. } | Self::AffineBias | Self::StandingEdge(_) => 3,
+            Self::PartDisagrees { .. } => 3,
             Self::Aliases { .. } | Self::RotationFromPath => 4,
             Self::NotObservable { .. }
             | Self::NotKnown { .. }
@@ -197,6 +203,7 @@ impl Warning {
             Self::WrongFamily { family: WrongFamily::Lens, .. } => "wrong_family_lens",
             Self::WrongFamily { family: WrongFamily::Shape, .. } => "wrong_family_shape",
             Self::StandingEdge(_) => "standing_edge",
+            Self::PartDisagrees { .. } => "part_disagrees",
             Self::Aliases { .. } => "aliases",
             Self::Diverged => "diverged",
             Self::StateLost { .. } => "state_lost",
@@ -240,6 +247,7 @@ impl fmt::Display for Warning {
             Self::TooManyRejected { rejected, frames } => write_too_many_rejected(f, *rejected, *frames),
             Self::WrongFamily { family, motion } => write_wrong_family(f, *family, *motion),
             Self::StandingEdge(edge) => write_standing_edge(f, edge),
+            Self::PartDisagrees { share } => write_part(f, *share),
             Self::Aliases { omega, motion } => write_aliases(f, omega, *motion),
             Self::Diverged => f.write_str("the identifier diverged: its numbers are not finite"),
             Self::StateLost { reason } => write_state_lost(f, reason),
@@ -253,6 +261,15 @@ impl fmt::Display for Warning {
             Self::AffineBias => f.write_str(AFFINE_BIAS),
         }
     }
+}
+
+fn write_part(f: &mut fmt::Formatter<'_>, share: f64) -> fmt::Result {
+    let percent = 100.0 * share;
+    write!(
+        f,
+        "{percent:.0} % of the points lie off the outline side by side, in the mean of the frames: a part moves by itself or bends, two objects are \
+         seen as one, or something covers it; the motion is that of the rest"
+    )
 }
 
 const OF_TWO_FRAMES: &str = "its motion is that between two frames: no third frame tells whether both show one object";

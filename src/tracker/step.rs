@@ -50,6 +50,9 @@ pub(super) fn of_following(filter: &MotionFilter, last_known: Option<f64>) -> Ve
         (restarts > 0).then_some(Warning::Restarted { times: restarts }),
         are_many.then_some(Warning::FramesRejected { rejected, frames }),
     ];
+    // What stands in front of an object says so by its edges.
+    let part = filter.disagreeing_part().filter(|_| filter.standing_edges().len() == 0);
+    let part = part.map(|share| Warning::PartDisagrees { share });
     let edges = filter.standing_edges().chain(filter.former_edges()).map(Warning::StandingEdge);
-    edges.chain(warnings.into_iter().flatten()).collect()
+    edges.chain(part).chain(warnings.into_iter().flatten()).collect()
 }

@@ -51,6 +51,7 @@ fn examples() -> Vec<Warning> {
             since: 0.9667,
             until: None,
         }),
+        Warning::PartDisagrees { share: 0.27 },
         Warning::PlaneMisfit { excess: 3.2 },
         Warning::AffineBias,
         Warning::MotionChanged { dynamics: None },

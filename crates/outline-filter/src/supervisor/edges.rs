@@ -24,6 +24,14 @@ impl MotionFilter {
         self.edges.former()
     }
 
+    /// Mean share of the points of a frame that lie off the known outline together with their neighbours, from 0.08 on:
+    /// a part of the object moves by itself or bends, two objects are seen as one, or something covers it. What is stated is the motion of the rest.
+    /// `None` in the first six frames.
+    #[must_use]
+    pub fn disagreeing_part(&self) -> Option<f64> {
+        self.track()?.disagreeing_part()
+    }
+
     /// Counted up from 0 where poses no longer go back to the same first outline: after a [restart](Self::restarts), and where a frame has shown the
     /// turn of the object for the first time, since nobody knows how far it had turned until then, and where an [edge](Self::standing_edges) was
     /// found not to be of the object.

@@ -188,6 +188,7 @@ impl Track {
             commit(&proposal, frame, (&mut self.belief, &mut self.noise, &mut self.shape));
             self.belief.memory.take_frame();
             doubt = self.doubt_of_agreement(measurement.agreement, weakest, frame.points.len());
+            self.record_runs(frame);
             self.look_for_change_of_shape(frame);
             self.renew_centroid();
             shift = self.common_shift(frame);

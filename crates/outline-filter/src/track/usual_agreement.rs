@@ -4,7 +4,7 @@
 //! a prediction that misses this part makes outliers of its points. All others agree, and the pose goes on as predicted, for ever. A share of points
 //! that disagree which is larger than usual says so.
 use super::{Doubt, Track};
-use crate::{tuning::usual_agreement as tuning, update::Gate};
+use crate::{measurement::Frame, tuning::usual_agreement as tuning, update::Gate};
 
 /// How far the points of most of the frames agree.
 #[derive(Debug, Clone, Copy)]
@@ -14,12 +14,14 @@ pub(super) struct UsualAgreement {
     disagreeing: f64,
     /// The [weakest agreement](crate::measurement::View::weakest_agreement).
     weakest: f64,
+    /// Mean share of the points that disagree with both of their neighbours.
+    in_runs: f64,
     frames: usize,
 }
 
 impl Default for UsualAgreement {
     fn default() -> Self {
-        Self { disagreeing: 0.0, weakest: 1.0, frames: 0 }
+        Self { disagreeing: 0.0, weakest: 1.0, in_runs: 0.0, frames: 0 }
     }
 }
 
@@ -38,6 +40,11 @@ impl UsualAgreement {
             TurnShown::ByFew => tuning::SIGNIFICANT_OF_FEW,
         };
         (is_known || shown == TurnShown::ByFew) && disagreeing > usual + significant * deviation
+    }
+
+    /// Updates the mean share of points that disagree in runs by that of the frame that was taken last.
+    fn update_runs(&mut self, in_runs: f64) {
+        self.in_runs += (in_runs - self.in_runs) / self.frames.max(1) as f64;
     }
 
     /// Updates the usual weakest agreement by that of a frame; whether it is far less than usual.
@@ -71,6 +78,22 @@ impl Track {
             return Some(Doubt::Direction { weakest });
         }
         disagrees.then_some(Doubt::Points)
+    }
+
+    /// Takes how many of the points of an accepted frame, which have been measured, disagree in runs: what part of an object that moves by itself does, or
+    /// something in front of it. Outliers here and there do not.
+    pub(super) fn record_runs(&mut self, frame: &Frame) {
+        let (cells, weights) = (self.map.cells().len(), &frame.columns.weights);
+        let disagrees = |i: usize| weights[i] <= 0.0 && (frame.columns.numbers[i] as usize) < cells;
+        let within = 1..weights.len().saturating_sub(1);
+        let count = within.filter(|i| (i - 1..=i + 1).all(disagrees)).count();
+        self.usual.update_runs(count as f64 / weights.len().max(1) as f64);
+    }
+
+    /// Mean share of the points of a frame that disagree in runs, if that is no small part of the outline and several frames have shown it.
+    pub(crate) fn disagreeing_part(&self) -> Option<f64> {
+        let UsualAgreement { in_runs, frames, .. } = self.usual;
+        (frames >= tuning::FRAMES_OF_PART && in_runs >= tuning::SMALLEST_PART).then_some(in_runs)
     }
 
     /// Whether hardly any point usually disagrees with the outline.
@@ -109,7 +132,7 @@ fn disagreeing(agreement: f64) -> f64 {
 impl UsualAgreement {
     /// Whether it is a share of so many frames.
     pub(super) fn is_valid(&self) -> bool {
-        [self.disagreeing, self.weakest].iter().all(|share| (0.0..=1.0).contains(share))
+        [self.disagreeing, self.weakest, self.in_runs].iter().all(|share| (0.0..=1.0).contains(share))
             && self.frames < freeform_estimate::StateFormat::MOST_COUNTED
     }
 }

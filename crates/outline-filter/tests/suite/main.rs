@@ -25,6 +25,7 @@ mod near_symmetry;
 mod nearly_round;
 mod next_to_no_noise;
 mod partly_seen;
+mod parts_that_move;
 mod plane;
 mod point_deviations;
 mod projective_poses;
