@@ -162,8 +162,11 @@ impl Warning {
             Self::PointsOutOfOrder { .. } | Self::Diverged | Self::StateLost { .. } => 0,
             Self::TooManyRejected { .. } | Self::Lost { .. } | Self::Reacquiring { .. } => 1,
             Self::OfTwoFrames | Self::Ambiguous(_) | Self::TwoPlanes(_) | Self::AmbiguousCorrespondence { .. } => 2,
-            Self::WrongFamily { .. } | Self::PlaneMisfit { .. } | Self::AffineBias | Self::StandingEdge(_) => 3,
-            Self::PartDisagrees { .. } => 3,
+            Self::WrongFamily { .. }
+            | Self::PlaneMisfit { .. }
+            | Self::AffineBias
+            | Self::StandingEdge(_)
+            | Self::PartDisagrees { .. } => 3,
             Self::Aliases { .. } | Self::RotationFromPath => 4,
             Self::NotObservable { .. }
             | Self::NotKnown { .. }

@@ -116,7 +116,7 @@ impl OutlineMap {
         along.abs() > tuning::BEYOND_END * self.spacing && (known == number || along * to_known < 0.0)
     }
 
-    /// Whether most cells look elsewhere than their neighbours, so that they are too few to show the outline.
+    /// Whether the normals of neighbouring cells differ by so much, in the median, that the cells are too few to show the outline.
     pub(crate) fn bends_from_cell_to_cell(&self) -> bool {
         let of_cell = |cell: &Cell| {
             let turns = cell.neighbours.map(|n| cell.normal.angle(&self.cells[n].normal));
@@ -174,7 +174,8 @@ impl ContourNoise {
 pub(crate) enum CellsInCommon {
     /// Not where there is one alone, or a constant motion relates them: each may show cells of its own.
     NotNeeded,
-    /// They tell how the motion changes: a pose that has no cells in common with those before is where it was expected. Every frame shows nearly all.
+    /// They tell how the motion changes: a pose that has no cells in common with those before is where it was expected. Every frame shows most of
+    /// them, and nearly all where its points are evenly spaced.
     InEveryFrame,
     /// As that, of an outline that so few cells do not show: they are more, of which every frame shows some.
     InSomeFrames,
@@ -203,7 +204,8 @@ impl Resolution {
         let most = match in_common {
             CellsInCommon::NotNeeded => count / tuning::POINTS_PER_CELL,
             CellsInCommon::InEveryFrame => f64::min(count, points as f64) / tuning::POINTS_PER_COMMON_CELL,
-            CellsInCommon::InSomeFrames => count / tuning::POINTS_PER_FINER_CELL,
+            CellsInCommon::InSomeFrames => (count / tuning::POINTS_PER_FINER_CELL)
+                .max(f64::min(count, points as f64) / tuning::POINTS_PER_COMMON_CELL),
         };
         let finest = most.clamp(tuning::FEWEST_OF_FINEST, tuning::MOST_CELLS);
         let plenty = (tuning::LEAST_NOISE_PER_CELL * sigma).max(tuning::PLENTY_PER_CELL * length / points as f64);

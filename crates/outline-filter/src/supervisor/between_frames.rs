@@ -3,7 +3,7 @@ use super::{
     motion_filter::{MotionFilter, Phase},
     window::{Ahead, Due, Remapped, Remapping},
 };
-use crate::track::Track;
+use crate::{map::CellsInCommon, track::Track};
 
 /// Whether cutting the map anew is left to calls of [`prepare`](MotionFilter::prepare).
 #[derive(Debug, Clone, Copy, Default)]
@@ -73,7 +73,7 @@ impl MotionFilter {
 
     fn do_stage_that_is_due(&mut self) {
         let next = match self.window.take_remapping() {
-            Remapping::Due(Due::Placing { turn, cuts }) => self.place(turn, cuts),
+            Remapping::Due(Due::Placing { turn, cuts, in_common }) => self.place((turn, cuts), in_common),
             Remapping::Due(Due::Cutting(placed)) => self.cut(*placed),
             other => return self.window.set_remapping(other),
         };
@@ -91,7 +91,7 @@ impl MotionFilter {
         }
         if let Remapping::Drafted(draft) = self.window.take_remapping() {
             let next = match ahead {
-                Some(ahead) => self.exchange_for(ahead, draft.cuts),
+                Some(ahead) => self.exchange_for(ahead, (draft.cuts, draft.in_common)),
                 None => self.measure(*draft),
             };
             self.window.set_remapping(next);
@@ -136,7 +136,7 @@ impl MotionFilter {
     }
 
     /// Exchanges the track, which no rival is followed with, for what all frames kept make of it on cells cut anew.
-    pub(super) fn exchange_for(&mut self, ahead: Ahead, cuts: usize) -> Remapping {
+    pub(super) fn exchange_for(&mut self, ahead: Ahead, of_cut: (usize, CellsInCommon)) -> Remapping {
         let taken = match ahead {
             Ahead::Taken(taken) => taken.map(|taken| *taken),
             Ahead::Taking(taking) => {
@@ -144,7 +144,7 @@ impl MotionFilter {
                 taken.and_then(|taken| self.unless_astray(taken))
             }
         };
-        taken.map_or(Remapping::Idle, |taken| self.exchange(taken, Vec::new(), cuts))
+        taken.map_or(Remapping::Idle, |taken| self.exchange(taken, Vec::new(), of_cut))
     }
 
     /// A track that has taken the frames kept on cells cut anew. One that has gone astray among them, and explains the last of them worse than where

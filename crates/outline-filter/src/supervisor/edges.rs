@@ -26,7 +26,7 @@ impl MotionFilter {
 
     /// Mean share of the points of a frame that lie off the known outline together with their neighbours, from 0.08 on:
     /// a part of the object moves by itself or bends, two objects are seen as one, or something covers it. What is stated is the motion of the rest.
-    /// `None` in the first six frames.
+    /// `None` before six frames were taken, and below 0.08.
     #[must_use]
     pub fn disagreeing_part(&self) -> Option<f64> {
         self.track()?.disagreeing_part()

@@ -54,13 +54,15 @@ impl MotionFilter {
                     self.go_on(*measured, most, ahead)
                 }
                 Remapping::Placed(placed) if placed.turn == turn => Remapping::Due(Due::Cutting(placed)),
-                Remapping::Again { cuts } => Remapping::Due(Due::Placing { turn, cuts }),
+                Remapping::Again { cuts, in_common } => Remapping::Due(Due::Placing { turn, cuts, in_common }),
                 // The map is cut for another hypothesis where they have been exchanged meanwhile.
                 Remapping::Placed(_)
                 | Remapping::Drafted(_)
                 | Remapping::Measured(_)
                 | Remapping::Due(_)
-                | Remapping::Idle => Remapping::Due(Due::Placing { turn, cuts: 0 }),
+                | Remapping::Idle => {
+                    Remapping::Due(Due::Placing { turn, cuts: 0, in_common: CellsInCommon::NotNeeded })
+                }
             };
             self.window.set_remapping(next);
             if !self.leaves_work() {
@@ -80,12 +82,7 @@ impl MotionFilter {
         self.history.is_changing() || !self.settings.process_noise.is_none()
     }
 
-    /// Whether frames must have cells in common that are cut from them.
-    fn cells_in_common(&self) -> CellsInCommon {
-        if self.may_change() { CellsInCommon::InEveryFrame } else { CellsInCommon::NotNeeded }
-    }
-
-    /// As [`cells_in_common`](Self::cells_in_common), of the frames kept: also where they show that the motion changes, before it is seen to.
+    /// Whether the frames kept must have cells in common: where the motion changes, and where they show that it does before it is seen to.
     fn cells_in_common_of_kept(&mut self) -> CellsInCommon {
         let Some(track) = self.track.as_ref().filter(|_| !self.may_change()) else {
             return CellsInCommon::InEveryFrame;
@@ -97,12 +94,16 @@ impl MotionFilter {
 
     /// Puts the points of the first frames in order, for the hypothesis of a turn, after so many cuts, for a map to be cut along them: where there are
     /// rivals, after the next frame.
-    pub(super) fn place(&mut self, turn: f64, cuts: usize) -> Remapping {
+    pub(super) fn place(&mut self, (turn, cuts): (f64, usize), in_common: CellsInCommon) -> Remapping {
         let hypotheses = 1 + self.turn_hypotheses.followed().count();
         if hypotheses > 1 && kept_once_measured(self.window.len(), hypotheses) > tuning::MOST_KEPT {
             return Remapping::Idle;
         }
-        let in_common = self.cells_in_common_of_kept();
+        // The motion that has been seen to change in these frames has, whatever a better map says.
+        let in_common = match in_common {
+            CellsInCommon::NotNeeded => self.cells_in_common_of_kept(),
+            CellsInCommon::InEveryFrame | CellsInCommon::InSomeFrames => in_common,
+        };
         let Some(track) = &self.track else { return Remapping::Idle };
         let frames = match in_common {
             CellsInCommon::NotNeeded => self.window.by_motion(track),
@@ -117,27 +118,28 @@ impl MotionFilter {
     pub(super) fn cut(&mut self, Placed { runs, turn, cuts, in_common }: Placed) -> Remapping {
         let placed = self.track.as_ref().zip(self.window.first());
         let cut = placed.and_then(|(track, first)| track.recut_along(runs, first, in_common, &mut self.frame));
-        cut.map_or(Remapping::Idle, |track| Remapping::Drafted(Box::new(Draft { track, turn, cuts: cuts + 1 })))
+        let draft = |(track, in_common)| Remapping::Drafted(Box::new(Draft { track, turn, cuts: cuts + 1, in_common }));
+        cut.map_or(Remapping::Idle, draft)
     }
 
     /// Measures the frames kept on cells cut anew.
     pub(super) fn measure(&mut self, draft: Draft) -> Remapping {
-        let Draft { track, turn, cuts } = draft;
+        let Draft { track, turn, cuts, in_common } = draft;
         let Some(track) = self.begun_on(track) else { return Remapping::Idle };
         let hypotheses = 1 + self.turn_hypotheses.followed().count();
         if hypotheses == 1 {
             let ahead = Ahead::Taking(Box::new(Remapped::at_first(track)));
-            return self.exchange_for(ahead, cuts);
+            return self.exchange_for(ahead, (cuts, in_common));
         }
         let present = Remapped::at_first(track.clone());
-        let measured = Measured { begun: Draft { track, turn, cuts }, present, rivals: Vec::new() };
+        let measured = Measured { begun: Draft { track, turn, cuts, in_common }, present, rivals: Vec::new() };
         self.go_on(measured, frames_at_once(hypotheses) - tuning::FRAMES_OF_BEGINNING, TakenAhead::default())
     }
 
     /// Takes so many more of the frames kept on the new cells, at most.
     pub(super) fn take_kept(&mut self, remapped: Remapped, most: usize) -> Option<Remapped> {
         let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns_of_kept() };
-        let frames = remapper.window.by_motion(&remapped.track);
+        let frames = self.window.by_motion(&remapped.track);
         let next = remapped.frames_taken();
         let end = next.saturating_add(most).min(frames.len());
         remapper.taken(remapped, frames.get(next.checked_sub(1)?..end)?, &mut self.frame)
@@ -151,10 +153,10 @@ impl MotionFilter {
         most: usize,
         mut ahead: TakenAhead,
     ) -> Remapping {
-        let in_common = self.cells_in_common();
+        let in_common = begun.in_common;
         let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns_of_kept() };
         let frame = &mut self.frame;
-        let frames = remapper.window.by_motion(&present.track);
+        let frames = self.window.by_motion(&present.track);
         rivals.retain(|(turn, _)| self.turn_hypotheses.followed().any(|(of, _)| of == *turn));
         let mut waiting = self.turn_hypotheses.followed().filter(|(turn, _)| rivals.iter().all(|(of, _)| of != turn));
         let (next, is_last) = (waiting.next(), waiting.next().is_none());
@@ -185,7 +187,8 @@ impl MotionFilter {
         if !have_all {
             return Remapping::Measured(Box::new(Measured { begun, present, rivals }));
         }
-        self.unless_astray(present).map_or(Remapping::Idle, |present| self.exchange(present, rivals, begun.cuts))
+        self.unless_astray(present)
+            .map_or(Remapping::Idle, |present| self.exchange(present, rivals, (begun.cuts, in_common)))
     }
 
     /// Exchanges the track, and its rivals with it, for those on cells cut anew, and looks for changes of the motion once more: what was taken for
@@ -195,7 +198,7 @@ impl MotionFilter {
         &mut self,
         mut present: Remapped,
         mut rivals: Vec<(f64, Option<Remapped>)>,
-        cuts: usize,
+        (cuts, in_common): (usize, CellsInCommon),
     ) -> Remapping {
         let Some(track) = &self.track else { return Remapping::Idle };
         if !present.track.turn_leaps(track.body_pose(), 0.0) {
@@ -216,7 +219,11 @@ impl MotionFilter {
         self.window.set_poses(present.poses);
         // Each cut with rivals is from a multiple of the frames of the one before, as more are kept while these are measured.
         let are_many = self.window.len() > tuning::OCCASIONS[1] && self.turn_hypotheses.followed().next().is_some();
-        if has_settled || are_many || cuts >= tuning::MOST_CUTS { Remapping::Idle } else { Remapping::Again { cuts } }
+        if has_settled || are_many || cuts >= tuning::MOST_CUTS {
+            Remapping::Idle
+        } else {
+            Remapping::Again { cuts, in_common }
+        }
     }
 
     /// Begins anew, in the same body frame, with a frame that shows the turn at last: the earlier ones have turned by what nobody
@@ -255,7 +262,7 @@ impl Remapper<'_> {
     ) -> Option<Remapped> {
         let frames = self.window.by_motion(rival);
         let begun = begun.with_motion_of(rival).or_else(|| {
-            let mut begun = rival.recut(&frames, (1, in_common), buffers)?;
+            let (mut begun, _) = rival.recut(&frames, (1, in_common), buffers)?;
             begun.begin_as(rival, frames.first()?.outline, buffers);
             Some(begun)
         })?;

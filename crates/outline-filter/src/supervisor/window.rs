@@ -33,8 +33,8 @@ pub(super) enum Remapping {
     Drafted(Box<Draft>),
     /// The present track and its rivals take the frames kept on the new cells, a few in each step.
     Measured(Box<Measured>),
-    /// To be cut again, after so many cuts.
-    Again { cuts: usize },
+    /// To be cut again, after so many cuts, from frames that have these cells in common at least.
+    Again { cuts: usize, in_common: CellsInCommon },
     /// A stage that is due before the next frame is looked at. It is made before the state is saved.
     #[cfg_attr(feature = "serde", serde(skip))]
     Due(Due),
@@ -43,8 +43,8 @@ pub(super) enum Remapping {
 /// What is to be done to the frames kept, without the one that comes next.
 #[derive(Debug, Clone)]
 pub(super) enum Due {
-    /// Their points are to be put in order, for the hypothesis of a turn, after so many cuts.
-    Placing { turn: f64, cuts: usize },
+    /// Their points are to be put in order, for the hypothesis of a turn, after so many cuts, where they have these cells in common at least.
+    Placing { turn: f64, cuts: usize, in_common: CellsInCommon },
     /// Cells are to be cut along their points.
     Cutting(Box<Placed>),
 }
@@ -66,7 +66,7 @@ pub(super) struct Placed {
     pub(super) turn: f64,
     /// Cuts before.
     pub(super) cuts: usize,
-    /// Whether they have been placed where they were found, and not by a constant motion.
+    /// What cells are cut along them: none in common where a constant motion has placed them.
     pub(super) in_common: CellsInCommon,
 }
 
@@ -79,6 +79,8 @@ pub(super) struct Draft {
     pub(super) turn: f64,
     /// Cuts one after the other, this one included.
     pub(super) cuts: usize,
+    /// How it was cut.
+    pub(super) in_common: CellsInCommon,
 }
 
 /// Hypotheses on cells cut anew.
@@ -328,7 +330,7 @@ impl InitialisationWindow {
                     && begun.restore(of_measured)
                     && all.all(|remapped| remapped.restore(settings, kept, of_measured))
             }
-            Remapping::Again { cuts } => *cuts <= tuning::MOST_CUTS,
+            Remapping::Again { cuts, .. } => *cuts <= tuning::MOST_CUTS,
             // None is read.
             Remapping::Due(_) => false,
         };

@@ -37,20 +37,22 @@ impl Track {
         placed
     }
 
-    /// Whether frames are explained better in the poses that they were found in than in those of a constant motion, by more than the number of the poses
-    /// explains: an outline cut along points that were placed by that motion would be smeared.
+    /// Whether frames are explained better in the poses that they were found in than in those of a constant motion, which have fewer parameters, by
+    /// more than chance makes of that: cut along points that were placed by that motion, an outline would be smeared.
     pub(crate) fn explains_better(
         &self,
         as_found: &[PlacedFrame<'_>],
         by_motion: &[PlacedFrame<'_>],
         buffers: &mut Frame,
     ) -> bool {
+        // A constant motion has those of two poses.
+        let Some(more) = as_found.len().checked_sub(2).filter(|more| *more > 0) else { return false };
         let mut sums = [NegativeLogLikelihood::default(); 2];
         for (found, moved) in as_found.iter().zip(by_motion) {
             let of_frame = self.compared(found.outline, &[found.pose, moved.pose], buffers);
             sums.iter_mut().zip(&of_frame).for_each(|(sum, of_frame)| sum.add(of_frame));
         }
-        let parameters = as_found.len() * self.model().parameter_count();
+        let parameters = more * self.model().parameter_count();
         sums[1].is_worse_by_fit(tuning::FOUND_ELSEWHERE * parameters as f64, &sums[0])
     }
 
@@ -63,7 +65,7 @@ impl Track {
         buffers: &mut Frame,
         take: impl FnMut(&mut Self, &mut Frame, f64, &Outline) -> bool,
     ) -> Option<Self> {
-        let mut track = self.recut(frames, (stride, CellsInCommon::NotNeeded), buffers)?;
+        let (mut track, _) = self.recut(frames, (stride, CellsInCommon::NotNeeded), buffers)?;
         track.begin_as(self, frames.first()?.outline, buffers);
         track.replayed(frames, buffers, take)
     }
@@ -75,7 +77,7 @@ impl Track {
         frames: &[PlacedFrame<'_>],
         (stride, in_common): (usize, CellsInCommon),
         buffers: &mut Frame,
-    ) -> Option<Self> {
+    ) -> Option<(Self, CellsInCommon)> {
         let runs = self.points_along(frames, stride, buffers)?;
         self.recut_along(runs, frames.first()?.outline, in_common, buffers)
     }
@@ -103,31 +105,38 @@ impl Track {
         Some(runs.into_iter().map(|(run, closed)| (run.into_iter().map(|(_, q)| q).collect(), closed)).collect())
     }
 
-    /// As [`recut`](Self::recut), with the points of the frames in their order along the outline.
+    /// As [`recut`](Self::recut), with the points of the frames in their order along the outline; and what cells they have in common.
     pub(crate) fn recut_along(
         &self,
         runs: Vec<(Vec<Point2<f64>>, bool)>,
         first: &Outline,
-        in_common: CellsInCommon,
+        mut in_common: CellsInCommon,
         buffers: &mut Frame,
-    ) -> Option<Self> {
+    ) -> Option<(Self, CellsInCommon)> {
         let contours: Vec<_> = runs.into_iter().map(|(run, closed)| Contour::new(run, closed)).collect();
         buffers.load(first, self.reference);
         let least_noise = (tuning::LEAST_NOISE * self.noise.sigma).max(self.noise.rounding().of_point());
-        let draft = |contours, in_common, buffers: &Frame| {
+        let draft = |contours, in_common| {
             let of = (self.belief.model, self.reference);
             Self::draft(of, self.first_pose.pose, contours, (least_noise, in_common), buffers)
         };
-        let mut track = draft(contours.clone(), in_common, buffers)?;
-        if in_common == CellsInCommon::InEveryFrame && track.map.bends_from_cell_to_cell() {
-            track = draft(contours, CellsInCommon::InSomeFrames, buffers)?;
-        }
+        let track = if in_common == CellsInCommon::InEveryFrame {
+            let track = draft(contours.clone(), in_common)?;
+            if track.map.bends_from_cell_to_cell() {
+                in_common = CellsInCommon::InSomeFrames;
+                draft(contours, in_common)?
+            } else {
+                track
+            }
+        } else {
+            draft(contours, in_common)?
+        };
         // Through points that do not lie on one line, as where the frames do not show the same, a contour runs to and fro.
         let is_longer = track.map.length() > tuning::LONGEST * self.map.length();
         if track.turn_is_unseen() || is_longer && self.map.cells().len() >= tuning::CELLS_OF_LENGTH {
             return None;
         }
-        Some(track)
+        Some((track, in_common))
     }
 
     /// Measures the first of the frames that a track was cut anew from, as what another that has taken them knows of it.

@@ -56,22 +56,6 @@ impl Track {
     pub(crate) fn unmodelled_motions(&self) -> (UnmodelledEstimate, StateMatrix) {
         let estimate = self.unmodelled_estimate();
         let by_size = &self.sensitivity.state;
-        if std::env::var("DBGU").is_ok() {
-            eprintln!(
-                "   family {:?} beyond {} disp {:.2e}",
-                estimate.family, estimate.is_beyond_doubt, estimate.displacement
-            );
-            for l in 0..11 {
-                eprintln!(
-                    "     {l} size {:.2e} sens x {:.2e} y {:.2e} v {:.2e} {:.2e}",
-                    estimate.moments[(l, l)].sqrt(),
-                    by_size[(1, l)],
-                    by_size[(2, l)],
-                    by_size[(4, l)],
-                    by_size[(5, l)]
-                );
-            }
-        }
         (estimate, by_size * estimate.moments * by_size.transpose())
     }
 

@@ -14,7 +14,7 @@ pub(super) struct UsualAgreement {
     disagreeing: f64,
     /// The [weakest agreement](crate::measurement::View::weakest_agreement).
     weakest: f64,
-    /// Mean share of the points that disagree with both of their neighbours.
+    /// Mean share of the points that disagree together with both of their neighbours, over the last frames.
     in_runs: f64,
     frames: usize,
 }
@@ -44,7 +44,7 @@ impl UsualAgreement {
 
     /// Updates the mean share of points that disagree in runs by that of the frame that was taken last.
     fn update_runs(&mut self, in_runs: f64) {
-        self.in_runs += (in_runs - self.in_runs) / self.frames.max(1) as f64;
+        self.in_runs += (1.0 / self.frames.max(1) as f64).max(tuning::GAIN_OF_PART) * (in_runs - self.in_runs);
     }
 
     /// Updates the usual weakest agreement by that of a frame; whether it is far less than usual.
@@ -80,8 +80,8 @@ impl Track {
         disagrees.then_some(Doubt::Points)
     }
 
-    /// Takes how many of the points of an accepted frame, which have been measured, disagree in runs: what part of an object that moves by itself does, or
-    /// something in front of it. Outliers here and there do not.
+    /// Takes how many of the points of an accepted frame, which have been measured, disagree in runs: a part of an object that moves by itself does,
+    /// and something in front of it. Outliers here and there do not.
     pub(super) fn record_runs(&mut self, frame: &Frame) {
         let (cells, weights) = (self.map.cells().len(), &frame.columns.weights);
         let disagrees = |i: usize| weights[i] <= 0.0 && (frame.columns.numbers[i] as usize) < cells;

@@ -59,7 +59,7 @@ pub(crate) mod batch {
 
 /// Hypotheses of dynamics.
 pub(crate) mod dynamics {
-    /// Probability, in a step, that a constant motion changes to that of a certain other hypothesis: to all of them together, a change in 130,000 frames.
+    /// Probability, in a step, that a constant motion changes to that of a certain other hypothesis: to all of them together, a change in 110,000 frames.
     /// With a hundred times as much most sequences of a thousand frames were found to show a change by chance; a real one is seen a frame or two later.
     pub(crate) const LEAVES_CONSTANT: f64 = 0.000_000_5;
     /// As that, of a motion that changes already: most of those go on to.
@@ -72,7 +72,7 @@ pub(crate) mod dynamics {
     pub(crate) const BEGINS_TO_SHAKE: f64 = 0.0001;
     /// Probabilities before the third frame: most things on a table or in a machine turn about a fixed point, and few accelerate. Where frames
     /// do not tell a constant velocity from a constant generator, as where an object turns slowly, chance must not leave it out.
-    pub(crate) const PRIOR_OF_GENERATOR: f64 = 0.881;
+    pub(crate) const PRIOR_OF_GENERATOR: f64 = 0.878;
     pub(crate) const PRIOR_OF_VELOCITY: f64 = 0.09;
     /// Of the velocity of any point, which most bodies that are driven have at their axle.
     pub(crate) const PRIOR_OF_VELOCITY_OF_ANY: f64 = 0.01;
@@ -88,8 +88,9 @@ pub(crate) mod dynamics {
     pub(crate) const LEVELS: [f64; 9] = [1e-8, 1e-5, 1e-2, 0.3, 1e1, 3e2, 1e4, 3e5, 1e7];
     /// Steps that a density of one remembers; others, by its sixth root as many times (the gain of a Kalman filter of a random jerk).
     pub(crate) const MEMORY: f64 = 2.0;
-    /// As these, where the velocity of the centroid alone changes: from what falls while it spins to what a spring shakes. With the first two alone what
-    /// moved to and fro without turning was taken to turn to and fro as well: its omega had deviations twelve times as large.
+    /// As these, where the velocity of the centroid alone changes: of what falls while it spins, up to what a spring shakes. With the first two
+    /// alone what moves to and fro without turning was taken to turn to and fro as well: the deviation of its omega was twelve times, its error nine
+    /// times as large.
     pub(crate) const LEVELS_OF_VELOCITY: [f64; 5] = [1e-7, 1e-2, 1e1, 1e4, 1e7];
     /// As these, where it turns with the object. Of a body that turns by a small angle from frame to frame the others say nearly the same.
     pub(crate) const LEVELS_OF_GENERATOR: [f64; 4] = [1e-5, 1e-2, 1e1, 1e4];

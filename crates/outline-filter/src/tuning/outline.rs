@@ -22,13 +22,14 @@ pub(crate) mod map {
     pub(crate) const PLENTY_PER_CELL: f64 = 4.0;
     /// Fewest points of the first frame for each cell: with fewer, cells would be seen by chance.
     pub(crate) const POINTS_PER_CELL: f64 = 1.0;
-    /// Points of one frame for each cell, of cells that several frames must have in common, so that each of them shows nearly every cell. With four times
-    /// as many cells, of sixteen frames, a frame shows a quarter of them; poses with little noise were up to thirty deviations off then.
+    /// Points of one frame for each cell, of cells that several frames must have in common: each of them shows most of the cells then, and nearly
+    /// all where its points are evenly spaced. With four times as many, of sixteen frames, it shows a quarter; poses with little noise were up to
+    /// thirty deviations off.
     pub(crate) const POINTS_PER_COMMON_CELL: f64 = 1.0;
     /// Points of all frames for each cell where so few cells do not show the outline...
     pub(crate) const POINTS_PER_FINER_CELL: f64 = 4.0;
-    /// ...as their normals turn by more than this from cell to cell, in rad, in the median: gears with five points a tooth have 0.3 to 0.45 then, and poses
-    /// on them two solutions; smooth outlines of 80 points have 0.02 to 0.2.
+    /// ...as their normals differ by more than this from cell to cell, in rad, in the median: gears with five points a tooth have 0.3 to 0.45, and
+    /// poses on them two solutions; smooth outlines of 80 points have 0.02 to 0.2, of 40 some have more.
     pub(crate) const BENT: f64 = 0.25;
     /// Most cells of the first frame, which bounds the work of a frame.
     pub(crate) const MOST_CELLS: f64 = 800.0;
@@ -228,11 +229,14 @@ pub(crate) mod usual_agreement {
     /// Squares of the noise by which a pose further along a direction must explain a frame better, of which few points agree that tell it: four
     /// deviations of one parameter.
     pub(crate) const FURTHER_ALONG: f64 = 16.0;
-    /// Mean share of the points that disagree together with both of their neighbours, from which on a part of the outline does not move with the rest:
-    /// of stands with a pendulum, drawers, pistons and flags it is 0.13 to 0.3, of outliers here and there it is the cube of their share, 0.03 of a third.
+    /// Mean share of the points that disagree together with both of their neighbours, from which on a part of the outline does not move with the
+    /// rest. Of stands with a pendulum, drawers, pistons and flags it is 0.13 to 0.3; of outliers here and there it is the cube of their share, 0.04
+    /// of a third.
     pub(crate) const SMALLEST_PART: f64 = 0.08;
     /// Frames that say so.
     pub(crate) const FRAMES_OF_PART: usize = 6;
+    /// Share of a frame in that mean, at least: a part that begins to move by itself, or ceases to, is told after some tens of frames.
+    pub(crate) const GAIN_OF_PART: f64 = 1.0 / 64.0;
     /// Share by which a frame does that nothing explains better, so that it is not looked into again and again.
     pub(crate) const UNEXPLAINED: f64 = 0.5;
 }

@@ -28,9 +28,9 @@ pub(crate) mod remapping {
     pub(crate) const LONGEST: f64 = 1.4;
     /// Cells of a map from which on its length says so: one of fewer may itself be too short, as it cuts corners.
     pub(crate) const CELLS_OF_LENGTH: usize = 64;
-    /// Squares of the noise, for each parameter of each pose, by which frames are explained better where they were found than where a constant motion has
-    /// them, from which on that is not what a map is cut by. Chance explains one; of 300 recordings of constant motions none reached six.
-    pub(crate) const FOUND_ELSEWHERE: f64 = 6.0;
+    /// Squares of the noise, for each parameter that poses as found have more than a constant motion, beyond which that is not what a map is cut by.
+    /// Chance explains one; of 300 recordings of constant motions none reached eight.
+    pub(crate) const FOUND_ELSEWHERE: f64 = 12.0;
     /// Points that follow each other in less than this share of the mean distance lie in one place.
     pub(crate) const COMMON: f64 = 0.2;
 }

@@ -107,7 +107,7 @@ impl Sensitivity {
         // The estimates move as such residuals would move them.
         let right =
             SMatrix::<f64, STATE, UNMODELLED>::from_fn(|i, l| if i < S { repeats * sums.right[i][l] } else { 0.0 });
-        // So many frames correct what they have found together, and no more: each of them as much as the one would take it beyond.
+        // Weighted as so many frames, to first order in what they know beside what is known: with the gain of one frame they would overshoot.
         let mut with_all = *marginal;
         for (i, j) in (0..K).flat_map(|i| (0..K).map(move |j| (i, j))) {
             with_all[(i, j)] += (repeats - 1.0) * measured.information[(i, j)];

@@ -58,3 +58,26 @@ fn a_body_that_speeds_up_about_a_point_aside_is_followed_at_large_turns_from_fra
     assert!(told.rejected * 50 < told.frames && told.stated * 10 > told.frames * 9, "{told:?}");
     assert!(told.off * 100 <= told.stated && told.within * 100 > told.stated * 85, "{told:?}");
 }
+
+#[test]
+fn a_body_that_is_shaken_without_turning_has_an_angular_velocity_that_is_known_as_well_as_its_poses() {
+    for (shape, seed) in [BuiltInShape::Bird, BuiltInShape::Phone].into_iter().zip([3, 4]) {
+        let shaken = |time: f64| RigidMotion { omega: 0.0, b1: 9.0 * (9.0 * time).cos(), b2: 4.0 * (7.0 * time).sin() };
+        let mut run = filter(MotionModel::Rigid);
+        let (mut deviations, mut off) = (Vec::new(), 0);
+        for frame in
+            frames_of(shape, Motion::varying(shaken), Settings { points: 200, noise: 0.0005, ..settings(60, seed) })
+        {
+            run.step(frame.time, &frame.outline).expect("increasing times");
+            let omega = run.estimate().filter(|_| frame.index >= 20).and_then(|estimate| estimate.parameters().next());
+            if let Some((value, std)) = omega.and_then(|omega| omega.value.zip(omega.standard_deviation)) {
+                off += u32::from(value.abs() > 4.0 * std);
+                deviations.push(std);
+            }
+        }
+        deviations.sort_by(f64::total_cmp);
+        assert!(deviations.len() > 36, "{shape}: {}", deviations.len());
+        let median = deviations[deviations.len() / 2];
+        assert!(median < 0.02 && off == 0, "{shape}: {median}, {off} off");
+    }
+}

@@ -292,6 +292,7 @@ fn a_circle_shows_no_turn_however_many_radii_it_is_from_the_origin() {
             run.step(frame.time, &Outline::closed(moved).expect("an outline")).expect("increasing times");
             assert!(run.estimate().is_none_or(|_| !observable(&run)[0]), "{distance}, frame {}", frame.index);
         }
+        assert!(run.estimate().is_some(), "{distance}");
         let found = run.velocity().expect("known");
         let error = found.velocity - Vector2::new(0.4, -0.2);
         assert!(error.norm() < 5.0 * found.standard_deviations().norm(), "{distance}: {found:?}");

@@ -138,8 +138,8 @@ fn a_thrown_body_is_followed_from_the_third_frame_on() {
     }
 }
 
-/// From the 17th frame on one frame in four stands for all of them in what is left out of the model, and corrected it by more than it had found: after 55
-/// frames the deviation of the place was 0.2 radii, and no velocity was stated.
+/// One frame in four stands for all of them in what is left out of the model, and corrected it by more than it had found: after 55 frames the
+/// deviation of the place was 0.2 radii, and no velocity was stated.
 #[test]
 fn a_ball_that_is_thrown_is_known_as_well_at_the_end_of_its_way_as_in_the_middle() {
     const NOISE: f64 = 0.001;
