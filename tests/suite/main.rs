@@ -9,6 +9,7 @@ mod lost;
 mod masks;
 mod observability;
 mod paper_experiments;
+mod parts_that_move;
 #[cfg(feature = "serde")]
 mod pipeline_state;
 mod projective;
