@@ -1,5 +1,5 @@
 //! What the motion model of a track leaves out.
-use freeform_riccati::map_point;
+use freeform_riccati::{ParameterKind, map_point};
 
 use super::Track;
 use crate::{
@@ -7,7 +7,7 @@ use crate::{
     dynamics::{UnmodelledEstimate, WrongFamily},
     measurement::Frame,
     tuning::family as tuning,
-    update::{PoseMeasurement, Proposal, with_hold},
+    update::{PoseMeasurement, Proposal, displacement_in_picture, with_hold},
 };
 
 impl Track {
@@ -55,7 +55,18 @@ impl Track {
     /// motion.
     pub(crate) fn unmodelled_motions(&self) -> (UnmodelledEstimate, StateMatrix) {
         let estimate = self.unmodelled_estimate();
-        let by_size = &self.sensitivity.state;
+        let mut by_size = self.sensitivity.state;
+        // Place and velocity are those in the picture, wherever that puts the object.
+        let (model, k) = (self.belief.model, self.belief.parameter_count());
+        let centre = self.centred_pose().centre();
+        let velocity = (model.generator(&self.belief.motion[..k]) * centre.to_homogeneous()).xy();
+        let displaced = displacement_in_picture(&centre.coords, &velocity);
+        let velocities = (0..k).filter(|j| model.parameter_kinds()[*j] == ParameterKind::Velocity);
+        for (axis, j) in velocities.enumerate() {
+            for (block, of_all) in displaced.iter().enumerate() {
+                of_all.iter().enumerate().for_each(|(l, moved)| by_size[(block * k + j, l)] -= moved[axis]);
+            }
+        }
         (estimate, by_size * estimate.moments * by_size.transpose())
     }
 

@@ -23,5 +23,6 @@ pub(crate) use sensitivity::Sensitivity;
 pub(crate) use solve::{Linearisations, Proposal};
 pub(crate) use unmodelled_displacement::{
     EDGES, FOURTH_OF_EDGES, GROWTH, LENS, PERSPECTIVE, READ_OUT, SHEAR, UNMODELLED, UnmodelledMatrix, UnmodelledVector,
+    displacement_in_picture,
 };
 pub(crate) use unmodelled_score::UnmodelledScore;

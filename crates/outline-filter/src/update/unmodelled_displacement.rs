@@ -119,6 +119,26 @@ impl Instant {
     }
 }
 
+/// How far a unit of each motion that a picture has displaces a point of it, and how fast that changes as the point moves. None of growth, and of what
+/// edges and rows do: where those put an object is not where it is.
+pub(crate) fn displacement_in_picture(p: &Vector2<f64>, velocity: &Vector2<f64>) -> [[Vector2<f64>; UNMODELLED]; 2] {
+    let by = |l: usize, p: &Vector2<f64>, v: &Vector2<f64>| -> [Vector2<f64>; 2] {
+        let (square, of_square) = (p.norm_squared(), 2.0 * p.dot(v));
+        match l {
+            1 => [Vector2::new(p.x, -p.y), Vector2::new(v.x, -v.y)],
+            2 => [Vector2::new(p.y, p.x), Vector2::new(v.y, v.x)],
+            3 => [p.x * p, v.x * p + p.x * v],
+            4 => [p.y * p, v.y * p + p.y * v],
+            6 => [square * p, of_square * p + square * v],
+            7 => [2.0 * p.x * p + Vector2::new(square, 0.0), 2.0 * (v.x * p + p.x * v) + Vector2::new(of_square, 0.0)],
+            8 => [2.0 * p.y * p + Vector2::new(0.0, square), 2.0 * (v.y * p + p.y * v) + Vector2::new(0.0, of_square)],
+            _ => [Vector2::zeros(); 2],
+        }
+    };
+    let of_all: [[Vector2<f64>; 2]; UNMODELLED] = std::array::from_fn(|l| by(l, p, velocity));
+    [of_all.map(|both| both[0]), of_all.map(|both| both[1])]
+}
+
 /// Of unit displacements by the cosine and sine of twice and of four times the angle of the normal.
 #[inline(always)]
 fn displacements_of_edges(n: &Vector2<f64>) -> [[f64; 2]; 2] {
