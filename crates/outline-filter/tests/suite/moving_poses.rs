@@ -177,19 +177,19 @@ fn a_turn_that_the_first_frames_did_not_show_stays_unknown_when_the_map_is_cut_a
 /// deviation of half a hundredth of its way was stated.
 #[test]
 fn the_place_in_the_picture_of_a_body_that_has_gone_far_is_known_as_well_as_its_outline() {
-    for (shape, seed) in [BuiltInShape::Bird, BuiltInShape::Circle].into_iter().zip(0..) {
+    for seed in 0..3 {
         let motion = RigidMotion { omega: 0.0, b1: 12.0, b2: -9.0 };
-        let frames = frames_of(shape, motion, settings(60, seed));
+        let frames = frames_of(BuiltInShape::Bird, motion, Settings { points: 100, noise: 0.02, ..settings(20, seed) });
         let first = frames[0].outline.centroid();
         let mut run = filter(MotionModel::Rigid);
         for frame in &frames {
             run.step(frame.time, &frame.outline).expect("increasing times");
         }
         let [_, x, y] = run.state().expect("a state").pose_parameters()[..] else { panic!("three numbers") };
-        let gone = Vector2::new(12.0, -9.0) * frames[59].time;
+        let gone = Vector2::new(12.0, -9.0) * frames[19].time;
         for (at, expected) in [(x, first.x + gone.x), (y, first.y + gone.y)] {
             let (error, stated) = ((at.value - expected).abs(), at.standard_deviation);
-            assert!(error < 4.0 * stated && stated < 0.04, "{shape}: {at:?} {expected}");
+            assert!(error < 4.0 * stated && stated < 0.02, "seed {seed}: {at:?} {expected}");
         }
     }
 }
