@@ -201,11 +201,11 @@ impl Resolution {
         }
         // Exact points have no noise; the floor keeps weights finite and is far below what any number can tell.
         let sigma = (variance / f64::max(count, 1.0)).sqrt().max(crate::tuning::noise::SMALLEST);
+        let in_every_frame = f64::min(count, points as f64) / tuning::POINTS_PER_COMMON_CELL;
         let most = match in_common {
             CellsInCommon::NotNeeded => count / tuning::POINTS_PER_CELL,
-            CellsInCommon::InEveryFrame => f64::min(count, points as f64) / tuning::POINTS_PER_COMMON_CELL,
-            CellsInCommon::InSomeFrames => (count / tuning::POINTS_PER_FINER_CELL)
-                .max(f64::min(count, points as f64) / tuning::POINTS_PER_COMMON_CELL),
+            CellsInCommon::InEveryFrame => in_every_frame,
+            CellsInCommon::InSomeFrames => f64::max(count / tuning::POINTS_PER_FINER_CELL, in_every_frame),
         };
         let finest = most.clamp(tuning::FEWEST_OF_FINEST, tuning::MOST_CELLS);
         let plenty = (tuning::LEAST_NOISE_PER_CELL * sigma).max(tuning::PLENTY_PER_CELL * length / points as f64);

@@ -120,17 +120,12 @@ impl Track {
             let of = (self.belief.model, self.reference);
             Self::draft(of, self.first_pose.pose, contours, (least_noise, in_common), buffers)
         };
-        let track = if in_common == CellsInCommon::InEveryFrame {
-            let track = draft(contours.clone(), in_common)?;
-            if track.map.bends_from_cell_to_cell() {
-                in_common = CellsInCommon::InSomeFrames;
-                draft(contours, in_common)?
-            } else {
-                track
-            }
-        } else {
-            draft(contours, in_common)?
-        };
+        let to_be_finer = (in_common == CellsInCommon::InEveryFrame).then(|| contours.clone());
+        let mut track = draft(contours, in_common)?;
+        if let Some(contours) = to_be_finer.filter(|_| track.map.bends_from_cell_to_cell()) {
+            in_common = CellsInCommon::InSomeFrames;
+            track = draft(contours, in_common)?;
+        }
         // Through points that do not lie on one line, as where the frames do not show the same, a contour runs to and fro.
         let is_longer = track.map.length() > tuning::LONGEST * self.map.length();
         if track.turn_is_unseen() || is_longer && self.map.cells().len() >= tuning::CELLS_OF_LENGTH {

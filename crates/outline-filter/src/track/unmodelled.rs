@@ -1,4 +1,5 @@
 //! What the motion model of a track leaves out.
+use freeform_estimate::velocity_at;
 use freeform_riccati::{ParameterKind, map_point};
 
 use super::Track;
@@ -59,12 +60,12 @@ impl Track {
         // Place and velocity are those in the picture, wherever that puts the object.
         let (model, k) = (self.belief.model, self.belief.parameter_count());
         let centre = self.centred_pose().centre();
-        let velocity = (model.generator(&self.belief.motion[..k]) * centre.to_homogeneous()).xy();
-        let displaced = displacement_in_picture(&centre.coords, &velocity);
+        let velocity = velocity_at(&model.generator(&self.belief.motion[..k]), &centre);
         let velocities = (0..k).filter(|j| model.parameter_kinds()[*j] == ParameterKind::Velocity);
-        for (axis, j) in velocities.enumerate() {
-            for (block, of_all) in displaced.iter().enumerate() {
-                of_all.iter().enumerate().for_each(|(l, moved)| by_size[(block * k + j, l)] -= moved[axis]);
+        for (l, [moved, rate]) in displacement_in_picture(&centre.coords, &velocity).iter().enumerate() {
+            for (axis, j) in velocities.clone().enumerate() {
+                by_size[(j, l)] -= moved[axis];
+                by_size[(k + j, l)] -= rate[axis];
             }
         }
         (estimate, by_size * estimate.moments * by_size.transpose())
@@ -108,7 +109,7 @@ mod tests {
     use crate::prediction::TimeOfChange;
     use crate::track::Comparison;
     use crate::tuning::noise::{LARGEST, LARGEST_RATIO};
-    use crate::update::{FrameMeasurement, Gate, UNMODELLED};
+    use crate::update::{FrameMeasurement, Gate, LENS, PERSPECTIVE, SHEAR, UNMODELLED};
 
     const STEP: f64 = 0.05;
     const MOTION: [f64; 3] = [1.3, 0.4, -0.7];
@@ -178,6 +179,20 @@ mod tests {
             }
         }
         track.expect("frames")
+    }
+
+    #[test]
+    fn a_point_is_displaced_in_the_picture_as_cells_are_and_as_fast_as_it_moves() {
+        let (p, v, normal) = (Point2::new(0.7, -1.3), Vector2::new(-0.4, 0.9), Vector2::x());
+        let at = |l: usize, seconds: f64| displaced(l, (&(p + v * seconds), &normal), (&Point2::origin(), 0.0, &v));
+        for (l, [moved, rate]) in displacement_in_picture(&p.coords, &v).iter().enumerate() {
+            if SHEAR.contains(&l) || PERSPECTIVE.contains(&l) || LENS.contains(&l) {
+                let difference = (at(l, 1e-5) - at(l, -1e-5)) / 2e-5;
+                assert!((moved - at(l, 0.0)).norm() < 1e-12 && (rate - difference).norm() < 1e-8, "{l}");
+            } else {
+                assert_eq!((moved.norm(), rate.norm()), (0.0, 0.0), "{l}");
+            }
+        }
     }
 
     #[test]

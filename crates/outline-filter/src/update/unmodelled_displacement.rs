@@ -119,24 +119,21 @@ impl Instant {
     }
 }
 
-/// How far a unit of each motion that a picture has displaces a point of it, and how fast that changes as the point moves. None of growth, and of what
-/// edges and rows do: where those put an object is not where it is.
-pub(crate) fn displacement_in_picture(p: &Vector2<f64>, velocity: &Vector2<f64>) -> [[Vector2<f64>; UNMODELLED]; 2] {
-    let by = |l: usize, p: &Vector2<f64>, v: &Vector2<f64>| -> [Vector2<f64>; 2] {
-        let (square, of_square) = (p.norm_squared(), 2.0 * p.dot(v));
-        match l {
-            1 => [Vector2::new(p.x, -p.y), Vector2::new(v.x, -v.y)],
-            2 => [Vector2::new(p.y, p.x), Vector2::new(v.y, v.x)],
-            3 => [p.x * p, v.x * p + p.x * v],
-            4 => [p.y * p, v.y * p + p.y * v],
-            6 => [square * p, of_square * p + square * v],
-            7 => [2.0 * p.x * p + Vector2::new(square, 0.0), 2.0 * (v.x * p + p.x * v) + Vector2::new(of_square, 0.0)],
-            8 => [2.0 * p.y * p + Vector2::new(0.0, square), 2.0 * (v.y * p + p.y * v) + Vector2::new(0.0, of_square)],
-            _ => [Vector2::zeros(); 2],
-        }
-    };
-    let of_all: [[Vector2<f64>; 2]; UNMODELLED] = std::array::from_fn(|l| by(l, p, velocity));
-    [of_all.map(|both| both[0]), of_all.map(|both| both[1])]
+/// How far a unit of each motion that a picture has displaces a point p of it, as [`Instant::displacement`] has it along a normal, and how fast that
+/// changes as the point moves with velocity v. None of growth, and of what edges and rows do: where those put an object is not where it is.
+pub(crate) fn displacement_in_picture(p: &Vector2<f64>, v: &Vector2<f64>) -> [[Vector2<f64>; 2]; UNMODELLED] {
+    let (square, of_square) = (p.norm_squared(), 2.0 * p.dot(v));
+    let [along_x, along_y] = [p.x * p, p.y * p];
+    let [of_x, of_y] = [v.x * p + p.x * v, v.y * p + p.y * v];
+    let mut all = [[Vector2::zeros(); 2]; UNMODELLED];
+    all[SHEAR[0]] = [Vector2::new(p.x, -p.y), Vector2::new(v.x, -v.y)];
+    all[SHEAR[1]] = [Vector2::new(p.y, p.x), Vector2::new(v.y, v.x)];
+    all[PERSPECTIVE[0]] = [along_x, of_x];
+    all[PERSPECTIVE[1]] = [along_y, of_y];
+    all[LENS[0]] = [square * p, of_square * p + square * v];
+    all[LENS[1]] = [2.0 * along_x + Vector2::new(square, 0.0), 2.0 * of_x + Vector2::new(of_square, 0.0)];
+    all[LENS[2]] = [2.0 * along_y + Vector2::new(0.0, square), 2.0 * of_y + Vector2::new(0.0, of_square)];
+    all
 }
 
 /// Of unit displacements by the cosine and sine of twice and of four times the angle of the normal.
