@@ -1,6 +1,6 @@
 //! An outline of which a part does not move with the rest, through the tracker.
 use crate::tracker::tracker;
-use freeform_motion::{Warning, curve_fit::Outline, outline_io::OutlineFrame, tracker::Method};
+use freeform_motion::{Warning, curve_fit::Outline, outline_io::OutlineFrame, sim_camera::Shape, tracker::Method};
 use nalgebra::{Point2, Rotation2};
 
 /// A stand with an arm that has swung by an angle, seen as one: 200 points, evenly spaced from another place on in every frame.
@@ -8,20 +8,8 @@ fn stand_with_arm(frame: u64, angle: f64) -> OutlineFrame {
     let arm = [(-0.15, 0.0), (-0.15, -1.2), (0.15, -1.2), (0.15, 0.0)].map(|(x, y)| Point2::new(x, y));
     let stand = [(1.0, 0.2), (1.0, 1.6), (-1.0, 1.6), (-1.0, 0.2)].map(|(x, y)| Point2::new(x, y));
     let corners: Vec<_> = stand.into_iter().chain(arm.map(|p| Rotation2::new(angle) * p)).collect();
-    let sides: Vec<_> =
-        (0..corners.len()).map(|i| (corners[i], corners[(i + 1) % corners.len()] - corners[i])).collect();
-    let length: f64 = sides.iter().map(|(_, side)| side.norm()).sum();
-    let at = |i: u64| {
-        let mut along = (i as f64 + (0.618 * frame as f64).fract()) / 200.0 * length;
-        let side = sides.iter().find(|(_, side)| {
-            let is_here = along <= side.norm();
-            along -= if is_here { 0.0 } else { side.norm() };
-            is_here
-        });
-        let (from, side) = side.unwrap_or(&sides[0]);
-        from + side * (along / side.norm()).min(1.0)
-    };
-    let outline = Outline::closed((0..200).map(at).collect()).expect("an outline");
+    let points = Shape::from_polygon(&corners).expect("a polygon").sample(200, (0.618 * frame as f64).fract());
+    let outline = Outline::closed(points).expect("an outline");
     OutlineFrame { frame, time: frame as f64 / 30.0, object: "stand".to_owned(), outline }
 }
 
