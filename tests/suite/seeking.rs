@@ -100,3 +100,29 @@ fn an_object_that_is_not_in_a_frame_is_looked_for_and_nothing_changes_where_it_i
     assert!(observation.is_accepted());
     assert_eq!(tracker.results()[0].frames, before[0].frames + 1);
 }
+
+/// A bar of 120 by 20 that lies still for fifteen frames and then goes along itself by so much a frame; its points lie anywhere on it.
+fn starting_bar(number: u64, step: f64) -> OutlineFrame {
+    let moved = step * (number as f64 - 14.0).max(0.0);
+    let corners = [(0.0, 0.0, 1.0, 0.0), (120.0, 0.0, 0.0, 1.0), (120.0, 20.0, -1.0, 0.0), (0.0, 20.0, 0.0, -1.0)];
+    let begun_at = (0.618 * number as f64).fract();
+    let sides = corners.into_iter().zip([120, 20, 120, 20]).flat_map(|((x, y, dx, dy), points)| {
+        (0..points).map(move |i| {
+            let (along, error) = (f64::from(i) + begun_at, 0.05 * (12.9 * f64::from(i) + 3.1 * number as f64).sin());
+            Point2::new(x + dx * along + dy * error + moved, y + dy * along + dx * error)
+        })
+    });
+    OutlineFrame { object: "bar".to_owned(), ..frame(number, Outline::closed(sides.collect()).expect("a bar")) }
+}
+
+#[test]
+fn nothing_is_looked_for_where_a_bar_was_if_all_of_it_is_seen_where_it_has_gone() {
+    for step in [3.0, 4.0, -6.0, 8.0, 15.0, -30.0] {
+        let mut tracker = Tracker::new(TrackerSettings::default()).expect("default settings");
+        for number in 0..18 {
+            let bar = starting_bar(number, step);
+            let (_, taken) = tracker.push_or_seek(&bar, |_| unreachable!("{step}: all of it is there"));
+            assert!(taken.is_none());
+        }
+    }
+}

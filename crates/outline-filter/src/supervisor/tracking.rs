@@ -173,11 +173,12 @@ fn outcome_with_changes(
     (turns, comparison): (Turns, Comparison),
 ) -> (Outcome, Option<Apart>) {
     let mut outcome = track.update(frame, &gates.as_before, comparison);
-    if !settings.finds_changes() {
-        let apart = is_apart(&outcome).then(|| displacement_nearby(track, frame)).flatten();
-        return (outcome, apart);
-    }
     let MotionHistory { change, dynamics, since_taken, .. } = history;
+    let since_taken = *since_taken + seconds;
+    if !settings.finds_changes() {
+        let apart = may_be_apart(&outcome).then(|| displacement_nearby(track, frame)).flatten();
+        return told_apart(outcome, settings, (track, frame), (apart, since_taken));
+    }
     if !outcome.is_accepted()
         && let Some(dynamics) = dynamics
         && let Some(found) = outcome_by_others((track, frame), dynamics, (&outcome, &gates.as_before), comparison)
@@ -198,10 +199,10 @@ fn outcome_with_changes(
         outcome = found;
     }
     let gate = gates.nearby.filter(|_| turns != Turns::Several && !outcome.is_accepted());
-    let apart = (gate.is_some() || is_apart(&outcome)).then(|| displacement_nearby(track, frame)).flatten();
+    let apart = (gate.is_some() || may_be_apart(&outcome)).then(|| displacement_nearby(track, frame)).flatten();
     if let Some((gate, apart)) = gate.zip(apart) {
         let dynamics = dynamics.as_mut();
-        let found = (turns, (apart, *since_taken + seconds));
+        let found = (turns, (apart, since_taken));
         if let Some(found) = outcome_nearby((track, frame), dynamics, found, (&gate, comparison)) {
             change.was_sudden = true;
             outcome = found;
@@ -210,12 +211,37 @@ fn outcome_with_changes(
     if outcome.is_accepted() {
         change.update(&innovation, track.model().parameter_count());
     }
-    (outcome, apart.filter(|_| is_apart(&outcome)))
+    told_apart(outcome, settings, (track, frame), (apart, since_taken))
 }
 
-/// Whether a frame does not show the outline where it was expected.
-fn is_apart(outcome: &Outcome) -> bool {
-    matches!(outcome.verdict, Err(Rejection::AgreementTooSmall { .. } | Rejection::NotFound))
+/// The outcome of a frame that was not taken, and how far from where it was expected the outline lies, if it is not there. Where all of the object is shown
+/// in a pose that a search has found, that is what speaks against the frame, and not that it would show something else.
+fn told_apart(
+    outcome: Outcome,
+    settings: &FilterSettings,
+    (track, frame): (&Track, &mut Frame),
+    (apart, seconds): (Option<Apart>, f64),
+) -> (Outcome, Option<Apart>) {
+    let Some(apart) = apart.filter(|_| may_be_apart(&outcome)) else { return (outcome, None) };
+    // Points of an object that has been at rest scatter more once it moves.
+    let whole = track.gate_of_all(gate(settings, track)).without_noise();
+    let is_whole_there = whole.verdict(&outcome.measurement).is_ok();
+    let mut displaced = track.clone();
+    if !is_whole_there && displaced.displace(&apart, seconds) {
+        let distance = track.image_length(displaced.displacement_from(track.body_pose()));
+        if displaced.update(frame, &whole, Comparison::NotAsked).is_accepted() {
+            return (Outcome { verdict: Err(Rejection::Elsewhere { distance }), ..outcome }, Some(apart));
+        }
+    }
+    let is_noisy = matches!(outcome.verdict, Err(Rejection::NoiseTooLarge { .. }));
+    (outcome, Some(apart).filter(|_| !is_noisy))
+}
+
+/// Whether a frame may show the outline elsewhere than it was expected: the sides of a bar that has moved along itself may still lie on it, and its ends
+/// look like noise.
+fn may_be_apart(outcome: &Outcome) -> bool {
+    use Rejection::{AgreementTooSmall, NoiseTooLarge, NotFound};
+    matches!(outcome.verdict, Err(AgreementTooSmall { .. } | NoiseTooLarge { .. } | NotFound))
 }
 
 /// A track whose motion has changed by as much as the innovation of a frame says, which was not taken, with what becomes of the frame then; `None`

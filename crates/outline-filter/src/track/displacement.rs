@@ -34,6 +34,11 @@ impl Track {
         true
     }
 
+    /// A normalised length in image lengths.
+    pub(crate) fn image_length(&self, normalised: f64) -> f64 {
+        normalised * self.reference.radius
+    }
+
     /// How far the outline lies from where another pose has it, root mean square, normalised.
     pub(crate) fn displacement_from(&self, other: &Matrix3<f64>) -> f64 {
         let pose = &self.belief.pose;

@@ -50,6 +50,11 @@ pub enum Rejection {
         /// Largest accepted value.
         largest: f64,
     },
+    /// The frame shows all of the outline, but so far from where it was expected that next to none of its points lie on the outline there.
+    Elsewhere {
+        /// Distance of the outline from where it was expected, root mean square over the outline, image lengths.
+        distance: f64,
+    },
     /// The frame shows the outline, but its points scatter about it more than those of other frames.
     NoiseTooLarge {
         /// Standard deviation of this frame's noise, image lengths.
@@ -68,7 +73,13 @@ pub enum Rejection {
 impl Rejection {
     /// Whether points were compared with the known outline, and did not agree with it where it was expected.
     pub(crate) fn is_disagreement(self) -> bool {
-        matches!(self, Self::AgreementTooSmall { .. } | Self::InnovationTooLarge { .. } | Self::NoiseTooLarge { .. })
+        matches!(
+            self,
+            Self::AgreementTooSmall { .. }
+                | Self::InnovationTooLarge { .. }
+                | Self::Elsewhere { .. }
+                | Self::NoiseTooLarge { .. }
+        )
     }
 }
 
@@ -306,8 +317,12 @@ impl fmt::Display for Rejection {
                 let deviations = innovation.sqrt();
                 write!(f, "jumps away from where it was expected ({deviations:.0} standard deviations)")
             }
+            Self::Elsewhere { distance } => {
+                let decimals = decimals_of(*distance);
+                write!(f, "shows the object {distance:.decimals$} from where it was expected")
+            }
             Self::NoiseTooLarge { noise } => {
-                let decimals = (1.0 - noise.log10().floor()).max(0.0) as usize;
+                let decimals = decimals_of(*noise);
                 write!(
                     f,
                     "its points scatter by {noise:.decimals$} about the outline known, more than those of other frames"
@@ -318,6 +333,11 @@ impl fmt::Display for Rejection {
             Self::NotFound => f.write_str("the object was not found"),
         }
     }
+}
+
+/// Decimals that show two figures of a length.
+fn decimals_of(length: f64) -> usize {
+    (1.0 - length.log10().floor()).clamp(0.0, 9.0) as usize
 }
 
 #[cfg(test)]

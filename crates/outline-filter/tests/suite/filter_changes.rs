@@ -64,7 +64,7 @@ fn a_last_frame_that_lies_only_in_part_where_it_was_expected_widens_what_is_stat
         let (_, deviation) = omega_of(&run).expect("a motion that is known before");
         assert!(deviation < 0.01, "{shape} {omega}: {deviation}");
         let step = run.step(last.time, &last.outline).expect("increasing times");
-        if !matches!(step.rejection, Some(Rejection::AgreementTooSmall { .. })) {
+        if !matches!(step.rejection, Some(Rejection::AgreementTooSmall { .. } | Rejection::Elsewhere { .. })) {
             continue;
         }
         lies_in_part += 1;
@@ -257,7 +257,9 @@ fn turns(frames: &[Frame], turned: impl Fn(f64) -> f64) -> Vec<(f64, f64, bool)>
     for (number, frame) in frames.iter().enumerate() {
         let step = run.step(frame.time, &frame.outline).expect("a later frame");
         // Where the object was not found nothing says how far off the prediction is.
-        let is_found = step.rejection.is_none_or(|why| matches!(why, Rejection::InnovationTooLarge { .. }));
+        let is_found = step
+            .rejection
+            .is_none_or(|why| matches!(why, Rejection::InnovationTooLarge { .. } | Rejection::Elsewhere { .. }));
         let Some(state) = run.state().filter(|_| number >= 8 && is_found) else { continue };
         let turn = state.pose_parameters().into_iter().next().expect("the turn comes first");
         let off = turn.value - turned(frame.time);

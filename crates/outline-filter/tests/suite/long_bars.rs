@@ -1,8 +1,11 @@
 //! Outlines that are mostly one straight side: little of them shows how far they have gone along it.
 use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
-use freeform_outline_filter::{MotionFilter, Phase};
+use freeform_outline_filter::{MotionFilter, Phase, Rejection};
 use freeform_riccati::MotionModel;
 use nalgebra::{Point2, Vector2};
+use rand::{RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution as _, Normal};
 
 use crate::filter_support::filter;
 
@@ -98,4 +101,58 @@ fn how_fast_a_bent_bar_goes_along_itself_is_stated_where_an_end_shows_it() {
     let velocity = bent_bar_followed(4.4, Some(-20.0)).velocity().expect("a velocity");
     let (error, deviations) = (velocity.velocity - Vector2::new(132.0, 0.0), velocity.standard_deviations());
     assert!(deviations.max() < 1.0 && error.component_div(&deviations).amax() < 4.0, "{error} +- {deviations}");
+}
+
+/// A bar of 120 by 20 pixels that lies still for so many frames, and then goes along itself; every frame has its own points and its own noise.
+fn starting_bar(frame: u32, rests_for: u32, step: f64, rng: &mut ChaCha8Rng) -> Outline {
+    let moved = step * f64::from((frame + 1).saturating_sub(rests_for));
+    let begun_at: f64 = rng.random_range(0.0..1.0);
+    let (length, height) = (120.0, 20.0);
+    let corners =
+        [(0.0, 0.0, 1.0, 0.0), (length, 0.0, 0.0, 1.0), (length, height, -1.0, 0.0), (0.0, height, 0.0, -1.0)];
+    let sides = corners.into_iter().zip([length, height, length, height]);
+    let points = sides.flat_map(|((x, y, dx, dy), side)| {
+        (0..side as u32).map(move |i| {
+            let along = f64::from(i) + begun_at;
+            Point2::new(x + dx * along, y + dy * along)
+        })
+    });
+    let noise = Normal::new(0.0, NOISE).expect("a deviation");
+    let seen = points.map(|p| p + Vector2::new(moved + noise.sample(rng), noise.sample(rng)));
+    Outline::closed(seen.collect()).expect("a bar")
+}
+
+#[test]
+fn a_bar_that_starts_along_itself_is_seen_elsewhere_and_its_rest_is_not_stated_any_more() {
+    const RESTS_FOR: u32 = 15;
+    let mut elsewhere = 0;
+    for (step, seed) in [(3.0, 0), (4.0, 1), (-6.0, 2), (8.0, 3), (15.0, 4), (-30.0, 5)] {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut run = filter(MotionModel::Rigid);
+        for frame in 0..RESTS_FOR + 6 {
+            let outline = starting_bar(frame, RESTS_FOR, step, &mut rng);
+            let taken = run.step(f64::from(frame) / FRAME_RATE, &outline).expect("increasing times");
+            if frame < RESTS_FOR {
+                assert!(taken.is_accepted(), "{step}, frame {frame}");
+                continue;
+            }
+            if frame == RESTS_FOR {
+                match taken.rejection {
+                    None => assert_eq!(taken.phase, Phase::Acquiring, "{step}"),
+                    Some(Rejection::Elsewhere { distance }) => {
+                        elsewhere += 1;
+                        assert!((distance - step.abs()).abs() < 0.3, "{step}: {distance}");
+                    }
+                    Some(other) => panic!("{step}: {other}"),
+                }
+            }
+            let Some(estimate) = run.estimate() else { continue };
+            let along = estimate.parameters().find(|parameter| parameter.name == "b1").expect("a velocity");
+            if let Some((value, deviation)) = along.value.zip(along.standard_deviation) {
+                let off = (value - step * FRAME_RATE).abs();
+                assert!(off < 4.0 * deviation, "{step}, frame {frame}: {value} +- {deviation}");
+            }
+        }
+    }
+    assert!(elsewhere > 0);
 }
