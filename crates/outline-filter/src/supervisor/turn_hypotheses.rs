@@ -205,6 +205,7 @@ impl TurnHypotheses {
         let mut outcome = outcome;
         let mut is_another = false;
         self.frames += 1;
+        let before = self.likelihood;
         self.likelihood.add(&outcome.likelihood);
         if outcome.is_accepted() {
             self.compare_intervals(seconds);
@@ -254,6 +255,12 @@ impl TurnHypotheses {
             } else if outcome.is_accepted() && (have_met || !found.is_accepted() || is_worse) {
                 self.rule_out(index);
             }
+        }
+        if !outcome.is_accepted() {
+            // It shows something else, whatever its points are nearer to.
+            self.likelihood = before;
+            let followed = self.rivals.iter_mut().filter(|rival| rival.track.is_some());
+            followed.for_each(TurnHypothesis::forget_last_frame);
         }
         if is_another {
             self.name_turns_alike();

@@ -16,6 +16,9 @@ pub(super) struct TurnHypothesis {
     /// While it is followed.
     pub(super) track: Option<Track>,
     pub(super) likelihood: NegativeLogLikelihood,
+    /// Without the last frame.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    likelihood_before: NegativeLogLikelihood,
     pub(super) reason: Reason,
     /// Whether it looks the same as the one taken, and yet points are significantly better for it.
     pub(super) is_shown: bool,
@@ -34,7 +37,7 @@ pub(super) enum Reason {
 impl TurnHypothesis {
     /// One that is followed if it has a track.
     pub(super) fn new(track: Option<Track>, likelihood: NegativeLogLikelihood, reason: Reason) -> Self {
-        Self { track, likelihood, reason, is_shown: false }
+        Self { track, likelihood, likelihood_before: likelihood, reason, is_shown: false }
     }
 
     /// Measures the loaded frame, of which `outcome` was found with the present track, where it is still followed and can be predicted.
@@ -65,8 +68,14 @@ impl TurnHypothesis {
             (*track, found) = (changed, outcome);
         }
         track.record_spread(&found.measurement);
+        self.likelihood_before = self.likelihood;
         self.likelihood.add(&found.likelihood);
         Some(found)
+    }
+
+    /// Forgets what the last frame has said.
+    pub(super) fn forget_last_frame(&mut self) {
+        self.likelihood = self.likelihood_before;
     }
 
     /// What was found of the loaded frame, which the present track has shown to be one of the object.

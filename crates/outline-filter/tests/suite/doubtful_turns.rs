@@ -188,3 +188,38 @@ fn a_turn_that_has_grown_beyond_half_a_circle_per_frame_is_in_doubt() {
     // Of 200: a turn that grows is doubtful as long as few frames tell how fast.
     assert!(were_known > 30, "{were_known}");
 }
+
+/// Three sides of a square of 60 pixels, which a border cuts, at rest; or, joined to another one, more of them.
+fn sides_of_a_square(joined: bool, rng: &mut ChaCha8Rng) -> Outline {
+    let corners: &[(f64, f64)] = if joined {
+        &[(0.0, 0.0), (60.0, 0.0), (60.0, 14.0), (120.0, 14.0), (120.0, 74.0), (60.0, 74.0), (60.0, 60.0), (0.0, 60.0)]
+    } else {
+        &[(0.0, 0.0), (60.0, 0.0), (60.0, 60.0), (0.0, 60.0)]
+    };
+    let noise = Normal::new(0.0, 0.05).expect("a deviation");
+    let sides = corners.windows(2).flat_map(|side| {
+        let [(x0, y0), (x1, y1)] = [side[0], side[1]];
+        let length = (x1 - x0).hypot(y1 - y0).round();
+        (0..length as u32).map(move |i| {
+            let along = (f64::from(i) + 0.5) / length;
+            Point2::new(x0 + along * (x1 - x0), y0 + along * (y1 - y0))
+        })
+    });
+    let points = sides.map(|p| p + Vector2::new(noise.sample(rng), noise.sample(rng))).collect();
+    OpenOutline::new(vec![OpenArc::new(points).expect("an arc")]).expect("an outline").into()
+}
+
+#[test]
+fn a_frame_that_shows_something_else_does_not_tell_turns_apart_that_look_alike() {
+    for seed in 0..6 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut run = filter(MotionModel::Rigid);
+        for frame in 0..12 {
+            let outline = sides_of_a_square(frame == 2, &mut rng);
+            let step = run.step(f64::from(frame) / 30.0, &outline).expect("increasing times");
+            assert_eq!(step.is_accepted(), frame != 2, "seed {seed}, frame {frame}");
+        }
+        let omega = run.estimate().and_then(|estimate| estimate.parameters().next()?.value);
+        assert!(omega.is_none_or(|omega| omega.abs() < 0.1), "seed {seed}: {omega:?}");
+    }
+}
