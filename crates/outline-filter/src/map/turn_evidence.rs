@@ -10,18 +10,25 @@ pub(crate) enum TurnEvidence {
     /// What a frame has shown for the first time shows it, by the normals.
     AtLast,
     /// The map was begun anew with a frame that shows it, and no other frame has told it since.
-    New,
+    New(TimesBegun),
     /// As [`New`](Self::New), and the last frame has not shown it again.
-    NewAndHidden,
+    NewAndHidden(TimesBegun),
     /// Frames together have not told it as well as the normals promise: it is not asked for any more.
     Refuted,
 }
 
+/// How often maps have been begun anew, one after the other, each with a frame that seemed to show the turn, with no frame after it that showed it again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct TimesBegun(pub(crate) usize);
+
 /// What frames or cells say of the turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum TurnEvent {
-    /// The map was begun anew with a frame that shows the turn.
-    Begun,
+    /// The map was begun anew with a frame that shows the turn, after so many others that no frame has confirmed.
+    Begun { before: TimesBegun },
+    /// The map was to be begun anew, and the frame does not show the turn.
+    NotBegun,
     /// A frame has shown the turn.
     Confirmed,
     /// A frame has not shown the turn.
@@ -40,13 +47,15 @@ impl TurnEvidence {
     pub(crate) fn after(self, event: TurnEvent) -> Self {
         match (event, self) {
             (TurnEvent::Refuted, _) | (_, Self::Refuted) => Self::Refuted,
-            (TurnEvent::Begun, Self::Hidden | Self::NewAndHidden) => Self::NewAndHidden,
-            (TurnEvent::Begun, _) => Self::New,
-            (TurnEvent::Confirmed, Self::New) => Self::AsTheNormals,
-            (TurnEvent::NotSeen, Self::New | Self::NewAndHidden) => Self::NewAndHidden,
+            (TurnEvent::Begun { before }, _) => Self::New(TimesBegun(before.0 + 1)),
+            (TurnEvent::NotBegun, Self::Hidden) => Self::NewAndHidden(TimesBegun(0)),
+            (TurnEvent::NotBegun, Self::New(_) | Self::NewAndHidden(_)) => self,
+            (TurnEvent::NotBegun, _) => Self::New(TimesBegun(0)),
+            (TurnEvent::Confirmed, Self::New(_)) => Self::AsTheNormals,
+            (TurnEvent::NotSeen, Self::New(begun) | Self::NewAndHidden(begun)) => Self::NewAndHidden(begun),
             (TurnEvent::NotSeen, _) => Self::Hidden,
             (TurnEvent::AskedAnew, Self::Hidden) => Self::AsTheNormals,
-            (TurnEvent::AskedAnew, Self::NewAndHidden) => Self::New,
+            (TurnEvent::AskedAnew, Self::NewAndHidden(begun)) => Self::New(begun),
             (TurnEvent::ShownByGrowth, _) => Self::AtLast,
             (TurnEvent::NotShownByGrowth, Self::AtLast) => Self::AsTheNormals,
             (TurnEvent::Confirmed | TurnEvent::AskedAnew | TurnEvent::NotShownByGrowth, _) => self,
@@ -55,11 +64,19 @@ impl TurnEvidence {
 
     /// Whether one frame alone has shown it so far.
     pub(crate) fn is_new(self) -> bool {
-        matches!(self, Self::New | Self::NewAndHidden)
+        matches!(self, Self::New(_) | Self::NewAndHidden(_))
     }
 
     /// Whether frames have not shown it, so that it is a null direction whatever the normals promise.
     pub(crate) fn is_hidden(self) -> bool {
-        matches!(self, Self::Hidden | Self::NewAndHidden | Self::Refuted)
+        matches!(self, Self::Hidden | Self::NewAndHidden(_) | Self::Refuted)
+    }
+
+    /// How often maps have been begun in vain, this one included as long as no frame has confirmed it.
+    pub(crate) fn times_begun(self) -> TimesBegun {
+        match self {
+            Self::New(begun) | Self::NewAndHidden(begun) => begun,
+            Self::AsTheNormals | Self::Hidden | Self::AtLast | Self::Refuted => TimesBegun(0),
+        }
     }
 }

@@ -15,7 +15,7 @@ use crate::{
     measurement::Frame,
     search::Landmarks,
     track::{PlacedFrame, Track},
-    tuning::remapping as tuning,
+    tuning::{remapping as tuning, supervisor::BEGUN_IN_VAIN},
 };
 
 impl MotionFilter {
@@ -230,9 +230,14 @@ impl MotionFilter {
     /// knows.
     pub(super) fn begin_with_turn(&mut self, outline: &Outline) {
         let Some(track) = &mut self.track else { return };
+        if track.turn_evidence().times_begun().0 >= BEGUN_IN_VAIN {
+            track.refute_turn();
+            self.turn_hypotheses = Default::default();
+            return;
+        }
         let Some(new) = track.begun_anew(outline, &mut self.frame) else {
             track.hide_turn();
-            track.record_turn(TurnEvent::Begun);
+            track.record_turn(TurnEvent::NotBegun);
             return;
         };
         let to_body: Option<Affine2<f64>> = nalgebra::try_convert(new.pose().inverse());

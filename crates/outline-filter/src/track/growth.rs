@@ -7,7 +7,7 @@ use nalgebra::Matrix3;
 use super::{Track, body_frame::of_pose};
 use crate::{
     belief::StateVector,
-    map::{Contour, NullDirections, TurnEvent},
+    map::{CellsInCommon, Contour, NullDirections, TurnEvent},
     measurement::{Frame, NO_CELL, Pass},
     tuning::update::DEVIATIONS_PER_CELL,
     update::accumulate,
@@ -28,13 +28,16 @@ impl Track {
     pub(crate) fn begun_anew(&self, outline: &Outline, frame: &mut Frame) -> Option<Self> {
         frame.load(outline, self.reference);
         let contours = frame.contours(&self.belief.pose);
-        let mut track =
-            Self::cut(self.belief.model, self.reference, self.belief.pose, contours, self.noise.rounding(), frame)?;
+        // One contour alone may hide errors that frames have shown by now.
+        let least_noise = self.noise.rounding().of_point().max(self.noise.effective_variance().sqrt());
+        let of = (self.model(), self.reference);
+        let mut track = Self::draft(of, self.belief.pose, contours, (least_noise, CellsInCommon::NotNeeded), frame)?;
+        track.measure_draft(self.noise.rounding(), frame);
         if track.turn_is_unseen() {
             return None;
         }
         track.noise.adopt_level_of(&self.noise);
-        track.record_turn(TurnEvent::Begun);
+        track.record_turn(TurnEvent::Begun { before: self.turn_evidence().times_begun() });
         track.begin_with_any_turn_of(self, outline).then_some(track)
     }
 

@@ -406,6 +406,6 @@ impl Track {
 
     /// Whether a frame may show the turn where those before it did not.
     pub(crate) fn may_show_turn(&self) -> bool {
-        matches!(self.turn_evidence(), TurnEvidence::AtLast | TurnEvidence::NewAndHidden)
+        matches!(self.turn_evidence(), TurnEvidence::AtLast | TurnEvidence::NewAndHidden(_))
     }
 }

@@ -1,5 +1,6 @@
 //! Outlines that are nearly round, with noise.
 use freeform_curve_fit::Outline;
+use freeform_outline_filter::Phase;
 use freeform_riccati::{MotionModel, RigidMotion};
 use nalgebra::{Point2, Vector2};
 use rand::SeedableRng as _;
@@ -70,4 +71,40 @@ fn the_turn_of_an_ellipse_that_is_nearly_round_is_within_its_deviations_or_unkno
     let error = (squares / f64::from(stated)).sqrt();
     println!("{error}");
     assert!(error < 1.3, "{error}");
+}
+
+/// A ball of 5.5 pixels in radius as pictures show it, at a place in pixels: 44 points, the errors of neighbours alike.
+fn small_ball(x: f64, y: f64, rng: &mut ChaCha8Rng) -> Outline {
+    const COUNT: u32 = 44;
+    let noise = Normal::new(0.0, 0.08).expect("a deviation");
+    let waves: Vec<_> = (2..=7).map(|wave| (f64::from(wave), noise.sample(rng), noise.sample(rng))).collect();
+    let begun_at = Uniform::new(0.0, 1.0).expect("a range").sample(rng);
+    let points = (0..COUNT).map(|i| {
+        let angle = (f64::from(i) + begun_at) / f64::from(COUNT) * std::f64::consts::TAU;
+        let error: f64 = waves.iter().map(|(wave, a, b)| a * (wave * angle).cos() + b * (wave * angle).sin()).sum();
+        Point2::new(x + (5.5 + error) * angle.cos(), y + (5.5 + error) * angle.sin())
+    });
+    Outline::closed(points.collect()).expect("a ball")
+}
+
+#[test]
+fn the_velocity_of_a_ball_of_few_pixels_is_stated_though_its_errors_look_like_a_shape_in_many_frames() {
+    const FRAMES: u32 = 30;
+    let mut stated = 0;
+    for seed in 0..12 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut run = filter(MotionModel::Rigid);
+        let mut begun = 0;
+        for frame in 0..FRAMES {
+            let ball = small_ball(20.0 + 3.1 * f64::from(frame), 40.0 - 1.3 * f64::from(frame), &mut rng);
+            let step = run.step(f64::from(frame) / 30.0, &ball).expect("a later frame");
+            begun += u32::from(step.phase == Phase::Acquiring);
+        }
+        assert!(begun <= 4, "seed {seed}: begun {begun} times");
+        let Some(found) = run.velocity() else { continue };
+        let (off, std) = (found.velocity - Vector2::new(93.0, -39.0), found.standard_deviations());
+        assert!(off.component_div(&std).amax() < 4.0, "seed {seed}: {found:?}");
+        stated += 1;
+    }
+    assert!(stated >= 11, "{stated} of 12");
 }
