@@ -38,7 +38,8 @@ impl Chosen {
         let is_warned =
             || self.choice.warnings().any(|warning| matches!(warning, TracingWarning::MovesBesideRest { .. }));
         let still = match best {
-            Some(best) if best.rests && !is_warned() => {
+            // Where all are followed, what moves is among them.
+            Some(best) if best.rests && best.selection != Selection::All && !is_warned() => {
                 format!("; its middle rests: what moves and is smaller may be found by {MOVING}")
             }
             _ => String::new(),

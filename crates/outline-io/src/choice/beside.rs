@@ -6,6 +6,7 @@ use super::sight::Sight;
 use super::tuning::beside as tuning;
 use super::turning::Reach;
 use crate::affine_moment_invariants::is_within;
+use crate::identity::LEFT;
 
 /// What is seen to change besides what is traced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -79,6 +80,11 @@ pub(super) fn changes_beside(pictures: &[Vec<Sight>], still: &Sight, picture_are
     let is_beside = |sight: &Sight| !lies_on(sight, still) && sight.area < tuning::LARGEST_CHANGE * picture_area;
     let seen = pictures.iter().filter(|sights| sights.iter().any(is_beside)).count();
     Changes { seen, pictures: pictures.len() }
+}
+
+/// Whether a thing has its middle so near to that of another that it is the same one, or a part of it.
+pub(super) fn lies_where(sight: &Sight, other: &Sight) -> bool {
+    (sight.centre - other.centre).norm() < LEFT * other.size()
 }
 
 /// Whether a thing lies on another or in it.

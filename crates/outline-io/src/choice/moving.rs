@@ -16,7 +16,7 @@ use crate::picture_outlines::PictureSettings;
 use crate::trace_settings::Smoothing;
 
 /// Objects of a picture that are looked at.
-const OBJECTS: usize = 12;
+pub(super) const OBJECTS: usize = 12;
 
 /// Logarithm of the ratio of areas, and distance of the affine moment invariants, that one thing may have at different times.
 const ALIKE: f64 = 0.5;

@@ -1,9 +1,12 @@
 //! What is preferred to what rests, and what is said of what moves besides.
-use super::evidence::TracingEvidence;
-use super::moving::{Motion, what_moves};
+use super::beside::lies_where;
+use super::evidence::{TracingEvidence, evidence_of};
+use super::moving::{Motion, OBJECTS, what_moves};
+use super::trial::Trial;
 use super::warning::TracingWarning;
 use super::{FEWEST_FOR_MEDIAN, GOOD, PictureSample, Tracing, TracingChoice};
 use crate::channel::Channel;
+use crate::identity::Selection;
 use crate::picture_outlines::PictureSettings;
 
 /// What moves by less than this share of its size in all may rest: its outline may change where something in front of it moves.
@@ -44,9 +47,18 @@ pub(super) fn preferring_what_moves(
         return Some(TracingWarning::MovesBeside { seen, pictures });
     }
     let motion = match known {
-        Some((tracing, motion)) if Some(tracing) == rests => motion,
-        _ => motion_beside(sample, base, channel, rests.as_ref(), None)?,
+        Some((tracing, motion)) if Some(tracing) == rests => Some(motion),
+        _ => motion_beside(sample, base, channel, rests.as_ref(), None),
     };
+    let is_sure = |way: &TracingEvidence| way.score >= TracingChoice::CONVINCING;
+    if let Some(resting) = candidates.first_mut().filter(|best| best.rests && is_sure(best))
+        && !motion.as_ref().and_then(|motion| motion.moving.as_ref()).is_some_and(is_sure)
+        && shows_what_moves(sample, base, &resting.tracing)
+    {
+        resting.selection = Selection::All;
+        return None;
+    }
+    let motion = motion?;
     if let Some(moving) = motion.moving {
         candidates.retain(|candidate| candidate.tracing != moving.tracing);
         candidates.insert(0, moving);
@@ -58,6 +70,19 @@ pub(super) fn preferring_what_moves(
     }
     let changes = motion.changes.filter(|changes| changes.are_many())?;
     Some(TracingWarning::MovesBesideRest { seen: changes.seen, pictures: changes.pictures })
+}
+
+/// Whether a way whose largest object rests shows another one that moves, such as one that turns in its place, of which differences from the median of the
+/// pictures show fragments alone.
+fn shows_what_moves(sample: &PictureSample, base: &PictureSettings, tracing: &Tracing) -> bool {
+    let trial = Trial::whole(sample, base, tracing.channel);
+    let Some(still) = Trial::fine(sample, base, tracing.channel).first_sight(tracing) else { return false };
+    let others = trial.all_sights(tracing, OBJECTS).into_iter().filter_map(|sights| {
+        let others = sights.into_iter().filter(|sight| !lies_where(sight, &still));
+        others.max_by(|a, b| a.area.total_cmp(&b.area))
+    });
+    let other = evidence_of(&trial, *tracing, &others.collect::<Vec<_>>());
+    other.is_some_and(|other| !other.rests && other.score >= TracingChoice::CONVINCING)
 }
 
 /// The first way whose object leaves its place, where it is told beyond doubt, and hardly less well than what rests, the best. It has seen it whole,
@@ -90,7 +115,6 @@ pub(super) fn motion_beside(
 mod tests {
     use super::*;
     use crate::choice::TracingWay;
-    use crate::identity::Selection;
     use crate::trace_settings::Smoothing;
 
     /// What shows a thing of 20 by 20 pixels in pictures of 200 by 100.

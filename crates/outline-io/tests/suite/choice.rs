@@ -85,6 +85,26 @@ fn what_rests_is_told_to_rest_where_nothing_moves() {
 }
 
 #[test]
+fn all_are_followed_where_something_smaller_turns_in_its_place_beside_what_rests() {
+    for (length, turn) in [(34.0, 0.08), (22.0, -0.05)] {
+        let pictures = (0..24).map(|frame| {
+            picture(frame, |x, y| {
+                let (sine, cosine) = (turn * f64::from(frame)).sin_cos();
+                let (x0, y0) = (x - 80.0, y - 110.0);
+                let (along, across) = (cosine * x0 + sine * y0, cosine * y0 - sine * x0);
+                let bar = (along.abs() - length).max(across.abs() - 9.0);
+                bar.min(disc(x, y, [225.0, 130.0, 40.0]))
+            })
+        });
+        let choice = choice(&pictures.collect::<Vec<_>>());
+        let best = choice.best().expect("a way");
+        assert!(best.rests && best.selection == Selection::All, "{length}: {best:?}");
+        assert!(!matches!(best.tracing.way, TracingWay::Median(_)), "{length}: {best:?}");
+        assert_eq!(choice.warnings().next(), None, "{length}");
+    }
+}
+
+#[test]
 fn a_toothed_wheel_that_turns_in_its_place_is_followed_and_not_its_teeth() {
     for turn in [0.02, 0.2] {
         let wheel = |frame: u32| {
