@@ -7,9 +7,16 @@ use crate::args::{ObjectsChoice, PictureOptions};
 pub(crate) fn hint(error: &TraceError, options: &PictureOptions) -> Option<&'static str> {
     match error {
         TraceError::NoRing => Some("try another --ring, --ring-width or --channel"),
+        TraceError::TooSmall { .. } if options.dark => {
+            Some("try a smaller --min-area, another --threshold, or --light")
+        }
         TraceError::TooSmall { .. } => Some("try a smaller --min-area, another --threshold, or --dark"),
         TraceError::FillsPicture | TraceError::VisiblePartStraight { .. } | TraceError::NoObject { .. } => {
-            Some("try --dark or --light, or another --threshold")
+            Some(match (options.light, options.dark) {
+                (_, true) => "try --light, or another --threshold",
+                (true, false) => "try --dark, or another --threshold",
+                (false, false) => "try --dark or --light, or another --threshold",
+            })
         }
         TraceError::NoContrast { .. } if options.background.is_some() => {
             Some("try another --background, --threshold or --channel")
@@ -37,4 +44,28 @@ pub(crate) fn missed_bodies(
     Some(format!(
         "bodies of other grey values are not followed: --background surface --threshold {level} --objects all finds what differs from the ground"
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser as _;
+
+    use super::*;
+
+    #[derive(clap::Parser)]
+    struct Given {
+        #[command(flatten)]
+        pictures: PictureOptions,
+    }
+
+    #[test]
+    fn a_side_of_the_ground_that_was_given_is_not_among_what_may_help() {
+        for error in [TraceError::FillsPicture, TraceError::TooSmall { pixels: 9, needed: 64 }] {
+            for (given, other) in [("--dark", "--light"), ("--light", "--dark")] {
+                let Given { pictures } = Given::parse_from(["", given]);
+                let told = hint(&error, &pictures).expect("something may help");
+                assert!(told.contains(other) && !told.contains(given), "{given}: {told}");
+            }
+        }
+    }
 }

@@ -24,6 +24,8 @@ pub(crate) struct Chosen {
     pub(crate) options: String,
     /// Area of another object over that of the largest, which alone is followed, where that is worth telling.
     left_out: Option<f64>,
+    /// Whether all are followed although no other one is of its size, since another one moves.
+    follows_another: bool,
 }
 
 impl Chosen {
@@ -38,8 +40,7 @@ impl Chosen {
         let is_warned =
             || self.choice.warnings().any(|warning| matches!(warning, TracingWarning::MovesBesideRest { .. }));
         let still = match best {
-            // Where all are followed, what moves is among them.
-            Some(best) if best.rests && best.selection != Selection::All && !is_warned() => {
+            Some(best) if best.rests && !self.follows_another && !is_warned() => {
                 format!("; its middle rests: what moves and is smaller may be found by {MOVING}")
             }
             _ => String::new(),
@@ -118,7 +119,8 @@ pub(crate) fn choose(
     }
     let follows_one = objects.is_none() && given.objects.is_none();
     let left_out = Some(best.second).filter(|share| follows_one && *share >= WORTH_TELLING);
-    (options, Some(Chosen { choice, options: parts.join(" "), left_out }))
+    let follows_another = given.objects.is_none() && best.selection == Selection::All && best.objects <= 1;
+    (options, Some(Chosen { choice, options: parts.join(" "), left_out, follows_another }))
 }
 
 /// Puts a way into options.

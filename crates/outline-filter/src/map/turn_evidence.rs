@@ -17,7 +17,8 @@ pub(crate) enum TurnEvidence {
     Refuted,
 }
 
-/// How often maps have been begun anew, one after the other, each with a frame that seemed to show the turn, with no frame after it that showed it again.
+/// How often maps have been begun anew, one after the other, each with a frame that seemed to show the turn, and none after it that showed it again.
+/// Zero times where one was to be, and the frame did not show the turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct TimesBegun(pub(crate) usize);
@@ -47,7 +48,7 @@ impl TurnEvidence {
     pub(crate) fn after(self, event: TurnEvent) -> Self {
         match (event, self) {
             (TurnEvent::Refuted, _) | (_, Self::Refuted) => Self::Refuted,
-            (TurnEvent::Begun { before }, _) => Self::New(TimesBegun(before.0 + 1)),
+            (TurnEvent::Begun { before }, _) => Self::New(TimesBegun(before.0.saturating_add(1))),
             (TurnEvent::NotBegun, Self::Hidden) => Self::NewAndHidden(TimesBegun(0)),
             (TurnEvent::NotBegun, Self::New(_) | Self::NewAndHidden(_)) => self,
             (TurnEvent::NotBegun, _) => Self::New(TimesBegun(0)),
@@ -78,5 +79,34 @@ impl TurnEvidence {
             Self::New(begun) | Self::NewAndHidden(begun) => begun,
             Self::AsTheNormals | Self::Hidden | Self::AtLast | Self::Refuted => TimesBegun(0),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// After a map that was begun with a frame, and another that has not shown the turn.
+    fn begun_in_vain(before: TurnEvidence) -> TurnEvidence {
+        let begun = TurnEvidence::default().after(TurnEvent::Begun { before: before.times_begun() });
+        begun.after(TurnEvent::NotSeen)
+    }
+
+    #[test]
+    fn maps_begun_in_vain_are_counted_until_a_frame_confirms_the_turn() {
+        let twice = begun_in_vain(begun_in_vain(TurnEvidence::Hidden));
+        assert_eq!(twice, TurnEvidence::NewAndHidden(TimesBegun(2)));
+        let asked = twice.after(TurnEvent::AskedAnew);
+        assert_eq!((asked, asked.after(TurnEvent::NotSeen)), (TurnEvidence::New(TimesBegun(2)), twice));
+        assert_eq!(asked.after(TurnEvent::Confirmed).times_begun(), TimesBegun(0));
+        assert_eq!(twice.after(TurnEvent::NotBegun), twice);
+        assert_eq!(twice.after(TurnEvent::Refuted).after(TurnEvent::AskedAnew), TurnEvidence::Refuted);
+        assert!(twice.is_hidden() && twice.is_new() && !asked.is_hidden() && asked.is_new());
+    }
+
+    #[test]
+    fn a_map_that_was_to_be_begun_and_was_not_counts_for_none() {
+        assert_eq!(TurnEvidence::Hidden.after(TurnEvent::NotBegun), TurnEvidence::NewAndHidden(TimesBegun(0)));
+        assert_eq!(TurnEvidence::AsTheNormals.after(TurnEvent::NotBegun), TurnEvidence::New(TimesBegun(0)));
     }
 }

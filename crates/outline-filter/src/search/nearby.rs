@@ -10,8 +10,8 @@ use crate::{
 };
 
 /// How far from its predicted pose the object lies in a loaded frame which does not show it there, by few of its points: an error of the pose like
-/// those of the belief, without what the outline does not show. The search begins in that pose, and with the middle of the outline in that of the points:
-/// from where it was expected the sides of a bar are found, and its ends are not. `None` where neither leads to the object.
+/// those of the belief, without what the outline does not show. The search begins in that pose, and with the middle of the outline in that of the
+/// points: from where it was expected the sides of a bar are found, and its ends are not. `None` where neither leads to the object.
 pub(crate) fn displacement_nearby(track: &Track, frame: &Frame) -> Option<SVector<f64, MAX_PARAMETERS>> {
     let few = few_of(&frame.points);
     let predicted = track.body_pose();

@@ -15,7 +15,7 @@ use crate::{
     measurement::Frame,
     search::Landmarks,
     track::{PlacedFrame, Track},
-    tuning::{remapping as tuning, supervisor::BEGUN_IN_VAIN},
+    tuning::{remapping as tuning, supervisor::MOST_BEGUN_IN_VAIN},
 };
 
 impl MotionFilter {
@@ -230,9 +230,12 @@ impl MotionFilter {
     /// knows.
     pub(super) fn begin_with_turn(&mut self, outline: &Outline) {
         let Some(track) = &mut self.track else { return };
-        if track.turn_evidence().times_begun().0 >= BEGUN_IN_VAIN {
+        if track.turn_evidence().times_begun().0 >= MOST_BEGUN_IN_VAIN {
+            // It is hidden anew, as a turn that is refuted.
+            track.show_turn();
             track.refute_turn();
             self.turn_hypotheses = Default::default();
+            self.window.end();
             return;
         }
         let Some(new) = track.begun_anew(outline, &mut self.frame) else {

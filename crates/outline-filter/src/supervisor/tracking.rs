@@ -130,6 +130,10 @@ pub(super) fn advance(
     let gates = Gates::of_new_frame(settings, track, history.widening(track), (steady, turns));
     let (outcome, apart) =
         outcome_with_changes(settings, (track, frame), history, (seconds, &gates), (turns, comparison));
+    let (outcome, apart) = match apart {
+        Some(apart) => found_elsewhere(outcome, settings, (track, frame), (apart, history.since_taken + seconds)),
+        None => (outcome, None),
+    };
     history.record(&outcome, seconds);
     if outcome.is_accepted()
         && let Some(dynamics) = history.dynamics.as_mut().filter(|dynamics| dynamics.leads())
@@ -177,7 +181,7 @@ fn outcome_with_changes(
     let since_taken = *since_taken + seconds;
     if !settings.finds_changes() {
         let apart = may_be_apart(&outcome).then(|| displacement_nearby(track, frame)).flatten();
-        return told_apart(outcome, settings, (track, frame), (apart, since_taken));
+        return (outcome, apart);
     }
     if !outcome.is_accepted()
         && let Some(dynamics) = dynamics
@@ -211,34 +215,34 @@ fn outcome_with_changes(
     if outcome.is_accepted() {
         change.update(&innovation, track.model().parameter_count());
     }
-    told_apart(outcome, settings, (track, frame), (apart, since_taken))
+    let apart = apart.filter(|_| may_be_apart(&outcome));
+    (outcome, apart)
 }
 
-/// The outcome of a frame that was not taken, and how far from where it was expected the outline lies, if it is not there. Where all of the object is shown
-/// in a pose that a search has found, that is what speaks against the frame, and not that it would show something else.
-fn told_apart(
+/// The outcome of a frame that was not taken, and how far from where it was expected the outline lies, if it is not there. Where all of the object is
+/// shown in a pose that a search has found, that is what speaks against the frame, and not that it would show something else.
+fn found_elsewhere(
     outcome: Outcome,
     settings: &FilterSettings,
     (track, frame): (&Track, &mut Frame),
-    (apart, seconds): (Option<Apart>, f64),
+    (apart, since_taken): (Apart, f64),
 ) -> (Outcome, Option<Apart>) {
-    let Some(apart) = apart.filter(|_| may_be_apart(&outcome)) else { return (outcome, None) };
     // Points of an object that has been at rest scatter more once it moves.
     let whole = track.gate_of_all(gate(settings, track)).without_noise();
-    let is_whole_there = whole.verdict(&outcome.measurement).is_ok();
     let mut displaced = track.clone();
-    if !is_whole_there && displaced.displace(&apart, seconds) {
-        let distance = track.image_length(displaced.displacement_from(track.body_pose()));
-        if displaced.update(frame, &whole, Comparison::NotAsked).is_accepted() {
-            return (Outcome { verdict: Err(Rejection::Elsewhere { distance }), ..outcome }, Some(apart));
-        }
+    let is_elsewhere = whole.verdict(&outcome.measurement).is_err()
+        && displaced.displace(&apart, since_taken)
+        && displaced.update(frame, &whole, Comparison::NotAsked).is_accepted();
+    if is_elsewhere {
+        let distance = track.in_image_lengths(displaced.displacement_from(track.body_pose()));
+        return (Outcome { verdict: Err(Rejection::Elsewhere { distance }), ..outcome }, Some(apart));
     }
     let is_noisy = matches!(outcome.verdict, Err(Rejection::NoiseTooLarge { .. }));
     (outcome, Some(apart).filter(|_| !is_noisy))
 }
 
-/// Whether a frame may show the outline elsewhere than it was expected: the sides of a bar that has moved along itself may still lie on it, and its ends
-/// look like noise.
+/// Whether a frame may show the outline elsewhere than it was expected: the sides of a bar that has moved along itself may still lie on it, and its
+/// ends look like noise.
 fn may_be_apart(outcome: &Outcome) -> bool {
     use Rejection::{AgreementTooSmall, NoiseTooLarge, NotFound};
     matches!(outcome.verdict, Err(AgreementTooSmall { .. } | NoiseTooLarge { .. } | NotFound))

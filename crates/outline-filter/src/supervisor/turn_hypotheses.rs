@@ -257,10 +257,14 @@ impl TurnHypotheses {
             }
         }
         if !outcome.is_accepted() {
-            // It shows something else, whatever its points are nearer to.
+            // A frame that is not taken may show something else: what its points are nearer to says nothing of the turn.
+            self.frames -= 1;
             self.likelihood = before;
-            let followed = self.rivals.iter_mut().filter(|rival| rival.track.is_some());
-            followed.for_each(TurnHypothesis::forget_last_frame);
+            for rival in self.rivals.iter_mut().filter(|rival| rival.track.is_some()) {
+                rival.forget_last_frame();
+                rival.is_shown =
+                    rival.reason == Reason::Symmetry && before.of_points().is_worse_than(&rival.likelihood.of_points());
+            }
         }
         if is_another {
             self.name_turns_alike();

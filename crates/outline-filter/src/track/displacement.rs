@@ -35,7 +35,7 @@ impl Track {
     }
 
     /// A normalised length in image lengths.
-    pub(crate) fn image_length(&self, normalised: f64) -> f64 {
+    pub(crate) fn in_image_lengths(&self, normalised: f64) -> f64 {
         normalised * self.reference.radius
     }
 

@@ -28,8 +28,9 @@ impl Track {
     pub(crate) fn begun_anew(&self, outline: &Outline, frame: &mut Frame) -> Option<Self> {
         frame.load(outline, self.reference);
         let contours = frame.contours(&self.belief.pose);
-        // One contour alone may hide errors that frames have shown by now.
-        let least_noise = self.noise.rounding().of_point().max(self.noise.effective_variance().sqrt());
+        // The contour of one frame hides errors that neighbouring points share, and frames have told of by now.
+        let known_noise = self.noise.sigma * frame.deviations.typical();
+        let least_noise = self.noise.rounding().of_point().max(known_noise);
         let of = (self.model(), self.reference);
         let mut track = Self::draft(of, self.belief.pose, contours, (least_noise, CellsInCommon::NotNeeded), frame)?;
         track.measure_draft(self.noise.rounding(), frame);

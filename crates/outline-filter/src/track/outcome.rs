@@ -84,6 +84,9 @@ impl Outcome {
     pub(crate) fn gate_if_vouched_for(&self, gate: Gate, points: usize) -> Option<Gate> {
         match self.verdict {
             Err(Rejection::NoiseTooLarge { .. }) => Some(gate.without_noise()),
+            Err(Rejection::Elsewhere { .. }) if self.measurement.agreement >= gate.smallest_agreement => {
+                Some(gate.without_noise())
+            }
             Err(Rejection::AgreementTooSmall { .. } | Rejection::Elsewhere { .. }) => {
                 gate.vouched_for(&self.measurement, points)
             }

@@ -25,9 +25,10 @@ pub(crate) mod supervisor {
     /// Starts that came to nothing, one after the other, after which frames are no longer asked whether they are the wrong one: where one
     /// frame in five is wrong, three starts in a row come to nothing once in a hundred.
     pub(crate) const MOST_FRUITLESS: usize = 3;
-    /// Maps begun anew one after the other, each with a frame that seems to show the turn and is contradicted by the next ones, after which a turn is not
-    /// asked for any more: errors of a small disc's contour look like a shape in one frame in two.
-    pub(crate) const BEGUN_IN_VAIN: usize = 3;
+    /// Maps begun anew one after the other, each with a frame that seems to show the turn and is contradicted by the next ones, after which the map shows
+    /// no turn for good: errors of a small disc's contour look like a shape in one frame in two. A mark that every other frame shows is missed so in one
+    /// case of eight.
+    pub(crate) const MOST_BEGUN_IN_VAIN: usize = 3;
     /// Frames that may be searched one after the other: two seconds of video.
     pub(crate) const MOST_SEARCHES: usize = 60;
     /// Frames after which another one may be searched: a search costs as much as 15 to 30 frames that are followed, so that searches for what

@@ -43,16 +43,17 @@ pub enum Rejection {
         /// Share needed, [`FilterSettings::smallest_agreement`](crate::FilterSettings::smallest_agreement).
         smallest: f64,
     },
-    /// The frame shows the outline, but not at the place predicted by the motion.
+    /// The frame shows the outline, but not at the place predicted by the motion, as linearisations tell it.
     InnovationTooLarge {
         /// Squared innovation of the pose, as in [`FrameMeasurement::innovation`].
         innovation: f64,
         /// Largest accepted value.
         largest: f64,
     },
-    /// The frame shows all of the outline, but so far from where it was expected that next to none of its points lie on the outline there.
+    /// The frame shows all of the outline, but away from where it was expected: there too few of its points lie on it, or they scatter too much. A
+    /// search from there has found it.
     Elsewhere {
-        /// Distance of the outline from where it was expected, root mean square over the outline, image lengths.
+        /// Distance of the outline from where it was expected, root mean square over the outline, image lengths. The next frame may refute it.
         distance: f64,
     },
     /// The frame shows the outline, but its points scatter about it more than those of other frames.
@@ -319,7 +320,7 @@ impl fmt::Display for Rejection {
             }
             Self::Elsewhere { distance } => {
                 let decimals = decimals_of(*distance);
-                write!(f, "shows the object {distance:.decimals$} from where it was expected")
+                write!(f, "shows the object at a distance of {distance:.decimals$} from where it was expected")
             }
             Self::NoiseTooLarge { noise } => {
                 let decimals = decimals_of(*noise);
@@ -337,7 +338,7 @@ impl fmt::Display for Rejection {
 
 /// Decimals that show two figures of a length.
 fn decimals_of(length: f64) -> usize {
-    (1.0 - length.log10().floor()).clamp(0.0, 9.0) as usize
+    (1.0 - length.log10().floor()).clamp(0.0, 300.0) as usize
 }
 
 #[cfg(test)]

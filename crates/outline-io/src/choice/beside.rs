@@ -83,7 +83,7 @@ pub(super) fn changes_beside(pictures: &[Vec<Sight>], still: &Sight, picture_are
 }
 
 /// Whether a thing has its middle so near to that of another that it is the same one, or a part of it.
-pub(super) fn lies_where(sight: &Sight, other: &Sight) -> bool {
+pub(super) fn lies_in_place_of(sight: &Sight, other: &Sight) -> bool {
     (sight.centre - other.centre).norm() < LEFT * other.size()
 }
 

@@ -1,5 +1,5 @@
 //! What is preferred to what rests, and what is said of what moves besides.
-use super::beside::lies_where;
+use super::beside::lies_in_place_of;
 use super::evidence::{TracingEvidence, evidence_of};
 use super::moving::{Motion, OBJECTS, what_moves};
 use super::trial::Trial;
@@ -19,7 +19,7 @@ const LEAVES: f64 = 1.0;
 const HARDLY_LESS: f64 = 0.5;
 
 /// Puts what moves in front of the best way where that shows what rests, or is in doubt. Where the best does neither, but is not seen well or hardly
-/// moves, it says what else moves. The first of the candidates, so many, have been looked at closely. `known` is what has been found to move in place of a
+/// moves, it says what else moves. Where the best shows what rests and another object that moves, all of its objects are to be followed. The first of the candidates, so many, have been looked at closely. `known` is what has been found to move in place of a
 /// way.
 pub(super) fn preferring_what_moves(
     sample: &PictureSample,
@@ -51,34 +51,36 @@ pub(super) fn preferring_what_moves(
         _ => motion_beside(sample, base, channel, rests.as_ref(), None),
     };
     let is_sure = |way: &TracingEvidence| way.score >= TracingChoice::CONVINCING;
+    let (moving, changes) = motion.map_or((None, None), |motion| (motion.moving, motion.changes));
+    if moving.is_none()
+        && let Some(place) = rests.and_then(|_| leaves_its_place(&candidates[..closely], sample.size()))
+    {
+        candidates[..=place].rotate_right(1);
+        return None;
+    }
     if let Some(resting) = candidates.first_mut().filter(|best| best.rests && is_sure(best))
-        && !motion.as_ref().and_then(|motion| motion.moving.as_ref()).is_some_and(is_sure)
+        && !moving.as_ref().is_some_and(is_sure)
         && shows_what_moves(sample, base, &resting.tracing)
     {
         resting.selection = Selection::All;
         return None;
     }
-    let motion = motion?;
-    if let Some(moving) = motion.moving {
+    if let Some(moving) = moving {
         candidates.retain(|candidate| candidate.tracing != moving.tracing);
         candidates.insert(0, moving);
         return None;
     }
-    if let Some(place) = rests.and_then(|_| leaves_its_place(&candidates[..closely], sample.size())) {
-        candidates[..=place].rotate_right(1);
-        return None;
-    }
-    let changes = motion.changes.filter(|changes| changes.are_many())?;
+    let changes = changes.filter(|changes| changes.are_many())?;
     Some(TracingWarning::MovesBesideRest { seen: changes.seen, pictures: changes.pictures })
 }
 
-/// Whether a way whose largest object rests shows another one that moves, such as one that turns in its place, of which differences from the median of the
-/// pictures show fragments alone.
+/// Whether a way whose largest object rests shows another one that moves, such as one that turns in its place, of which differences from the median of
+/// the pictures show fragments alone. Of masks, which no median is made of, too.
 fn shows_what_moves(sample: &PictureSample, base: &PictureSettings, tracing: &Tracing) -> bool {
     let trial = Trial::whole(sample, base, tracing.channel);
-    let Some(still) = Trial::fine(sample, base, tracing.channel).first_sight(tracing) else { return false };
+    let Some(still) = trial.first_sight(tracing) else { return false };
     let others = trial.all_sights(tracing, OBJECTS).into_iter().filter_map(|sights| {
-        let others = sights.into_iter().filter(|sight| !lies_where(sight, &still));
+        let others = sights.into_iter().filter(|sight| !lies_in_place_of(sight, &still));
         others.max_by(|a, b| a.area.total_cmp(&b.area))
     });
     let other = evidence_of(&trial, *tracing, &others.collect::<Vec<_>>());

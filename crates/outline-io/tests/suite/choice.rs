@@ -105,6 +105,13 @@ fn all_are_followed_where_something_smaller_turns_in_its_place_beside_what_rests
 }
 
 #[test]
+fn the_largest_is_followed_where_something_smaller_rests_beside_it() {
+    let resting = |x, y| disc(x, y, [225.0, 130.0, 40.0]).min(disc(x, y, [80.0, 110.0, 18.0]));
+    let best = chosen(&(0..24).map(|frame| picture(frame, resting)).collect::<Vec<_>>());
+    assert!(best.rests && best.selection == Selection::Largest, "{best:?}");
+}
+
+#[test]
 fn a_toothed_wheel_that_turns_in_its_place_is_followed_and_not_its_teeth() {
     for turn in [0.02, 0.2] {
         let wheel = |frame: u32| {
