@@ -88,7 +88,7 @@ pub(super) fn lies_in_place_of(sight: &Sight, other: &Sight) -> bool {
 }
 
 /// Whether a thing lies on another or in it.
-fn is_part_of(sight: &Sight, other: &Sight) -> bool {
+pub(super) fn is_part_of(sight: &Sight, other: &Sight) -> bool {
     lies_on(sight, other) || surrounds(other, sight)
 }
 

@@ -1,7 +1,8 @@
 //! What is preferred to what rests, and what is said of what moves besides.
-use super::beside::lies_in_place_of;
+use super::beside::{is_part_of, lies_in_place_of};
 use super::evidence::{TracingEvidence, evidence_of};
 use super::moving::{Motion, OBJECTS, what_moves};
+use super::sight::Sight;
 use super::trial::Trial;
 use super::warning::TracingWarning;
 use super::{FEWEST_FOR_MEDIAN, GOOD, PictureSample, Tracing, TracingChoice};
@@ -35,7 +36,7 @@ pub(super) fn preferring_what_moves(
         let best = best?;
         let (is_good, hardly_moves) = (best.score >= GOOD, best.movement < HARDLY_MOVES * size_of(best, sample.size()));
         if is_good && !hardly_moves {
-            return None;
+            return moves_by_another_way(sample, base, candidates);
         }
         let motion = motion_beside(sample, base, channel, None, Some(&best.tracing))?;
         let (seen, pictures) = match motion.moving {
@@ -72,6 +73,33 @@ pub(super) fn preferring_what_moves(
     }
     let changes = changes.filter(|changes| changes.are_many())?;
     Some(TracingWarning::MovesBesideRest { seen: changes.seen, pictures: changes.pictures })
+}
+
+/// What another way, which is good too, shows to move where the best shows nothing, such as what is darker than the ground beside what is lighter. Light and
+/// shadows of a thing lie on it or in it, and are none.
+fn moves_by_another_way(
+    sample: &PictureSample,
+    base: &PictureSettings,
+    ways: &[TracingEvidence],
+) -> Option<TracingWarning> {
+    let (best, others) = ways.split_first()?;
+    let mut others = others.iter().filter(|way| way.score >= GOOD && !way.rests).peekable();
+    others.peek()?;
+    let known = Trial::fine(sample, base, best.tracing.channel).all_sights(&best.tracing, OBJECTS);
+    let is_beside = |sight: &Sight| {
+        let mut in_picture = known.iter().flatten().filter(|other| other.frame == sight.frame);
+        !in_picture.any(|other| is_part_of(sight, other) || is_part_of(other, sight))
+    };
+    others.find_map(|way| {
+        let trial = Trial::fine(sample, base, way.tracing.channel);
+        let pictures = trial.all_sights(&way.tracing, OBJECTS);
+        let largest =
+            |sights: Vec<Sight>| sights.into_iter().filter(is_beside).max_by(|a, b| a.area.total_cmp(&b.area));
+        let sights: Vec<Sight> = pictures.into_iter().filter_map(largest).collect();
+        let found = evidence_of(&trial, way.tracing, &sights)?;
+        let moves = !found.rests && found.score >= TracingChoice::CONVINCING && 2 * found.found > found.pictures;
+        moves.then_some(TracingWarning::MovesBeside { seen: found.found, pictures: found.pictures })
+    })
 }
 
 /// Whether a way whose largest object rests shows another one that moves, such as one that turns in its place, of which differences from the median of

@@ -104,6 +104,34 @@ fn all_are_followed_where_something_smaller_turns_in_its_place_beside_what_rests
     }
 }
 
+/// A picture of a light disc, and a dark one, on a ground between them.
+fn light_and_dark(frame: u32, light: [f64; 3], dark: [f64; 3]) -> GrayImage {
+    GrayImage::from_fn(320, 240, |x, y| {
+        let covered = |at| (0.5 - disc(f64::from(x) + 0.5, f64::from(y) + 0.5, at)).clamp(0.0, 1.0);
+        let grey = 120.0 + (60.0 - 120.0) * covered(dark);
+        Luma([(grey + (200.0 - grey) * covered(light) + noise(x, y, frame)).round() as u8])
+    })
+}
+
+#[test]
+fn a_dark_thing_that_moves_beside_a_light_one_is_told_and_a_shadow_is_not() {
+    let told = |dark: fn(f64) -> [f64; 3]| {
+        let pictures = (0..40).map(|frame| {
+            let time = f64::from(frame);
+            light_and_dark(frame, [50.0 + 2.0 * time, 60.0, 26.0], dark(time))
+        });
+        let choice = choice(&pictures.collect::<Vec<_>>());
+        assert_eq!(choice.best().expect("a way").tracing.way, TracingWay::Lighter);
+        choice.warnings().next()
+    };
+    let beside = told(|time| [270.0 - 2.0 * time, 180.0, 22.0]);
+    assert!(
+        matches!(beside, Some(TracingWarning::MovesBeside { seen, pictures }) if 2 * seen > pictures),
+        "{beside:?}"
+    );
+    assert_eq!(told(|time| [62.0 + 2.0 * time, 76.0, 25.0]), None);
+}
+
 #[test]
 fn the_largest_is_followed_where_something_smaller_rests_beside_it() {
     let resting = |x, y| disc(x, y, [225.0, 130.0, 40.0]).min(disc(x, y, [80.0, 110.0, 18.0]));
