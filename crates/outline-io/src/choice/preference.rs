@@ -20,8 +20,8 @@ const LEAVES: f64 = 1.0;
 const HARDLY_LESS: f64 = 0.5;
 
 /// Puts what moves in front of the best way where that shows what rests, or is in doubt. Where the best does neither, but is not seen well or hardly
-/// moves, it says what else moves. Where the best shows what rests and another object that moves, all of its objects are to be followed. The first of the candidates, so many, have been looked at closely. `known` is what has been found to move in place of a
-/// way.
+/// moves, it says what else moves. Where the best shows what rests and another object that moves, all of its objects are to be followed. The first of
+/// the candidates, so many, have been looked at closely. `known` is what has been found to move in place of a way.
 pub(super) fn preferring_what_moves(
     sample: &PictureSample,
     base: &PictureSettings,
