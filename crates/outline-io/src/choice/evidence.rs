@@ -34,7 +34,8 @@ pub struct TracingEvidence {
     pub objects: usize,
     /// Area of the largest other object over its own, in the median picture; 0 where there is none.
     pub second: f64,
-    /// Which objects are worth to be followed: all where several are of its size, or where it rests and another one moves, those that move where it was chosen as it moves.
+    /// Which objects are worth to be followed: all where several are of its size, or where it rests and another one moves; those that move where it
+    /// was chosen as it moves.
     pub selection: Selection,
     /// Share of its area that holes and marks have.
     pub inner_share: f64,

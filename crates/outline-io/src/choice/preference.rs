@@ -75,8 +75,8 @@ pub(super) fn preferring_what_moves(
     Some(TracingWarning::MovesBesideRest { seen: changes.seen, pictures: changes.pictures })
 }
 
-/// What another way, which is good too, shows to move where the best shows nothing, such as what is darker than the ground beside what is lighter. Light and
-/// shadows of a thing lie on it or in it, and are none.
+/// What another way, which is good too, shows to move where the best shows nothing, such as what is darker than the ground beside what is lighter.
+/// Light and shadows of a thing lie on it or in it, and are none.
 fn moves_by_another_way(
     sample: &PictureSample,
     base: &PictureSettings,
@@ -91,15 +91,17 @@ fn moves_by_another_way(
         !in_picture.any(|other| is_part_of(sight, other) || is_part_of(other, sight))
     };
     others.find_map(|way| {
-        let trial = Trial::fine(sample, base, way.tracing.channel);
-        let pictures = trial.all_sights(&way.tracing, OBJECTS);
-        let largest =
-            |sights: Vec<Sight>| sights.into_iter().filter(is_beside).max_by(|a, b| a.area.total_cmp(&b.area));
-        let sights: Vec<Sight> = pictures.into_iter().filter_map(largest).collect();
-        let found = evidence_of(&trial, way.tracing, &sights)?;
-        let moves = !found.rests && found.score >= TracingChoice::CONVINCING && 2 * found.found > found.pictures;
-        moves.then_some(TracingWarning::MovesBeside { seen: found.found, pictures: found.pictures })
+        let found = largest_that_moves(&Trial::fine(sample, base, way.tracing.channel), &way.tracing, is_beside)?;
+        let is_in_most = 2 * found.found > found.pictures;
+        is_in_most.then_some(TracingWarning::MovesBeside { seen: found.found, pictures: found.pictures })
     })
+}
+
+/// The largest of some of the objects that a way shows, picture for picture, if it moves beyond doubt.
+fn largest_that_moves(trial: &Trial, tracing: &Tracing, is_asked: impl Fn(&Sight) -> bool) -> Option<TracingEvidence> {
+    let largest = |sights: Vec<Sight>| sights.into_iter().filter(&is_asked).max_by(|a, b| a.area.total_cmp(&b.area));
+    let sights: Vec<Sight> = trial.all_sights(tracing, OBJECTS).into_iter().filter_map(largest).collect();
+    evidence_of(trial, *tracing, &sights).filter(|found| !found.rests && found.score >= TracingChoice::CONVINCING)
 }
 
 /// Whether a way whose largest object rests shows another one that moves, such as one that turns in its place, of which differences from the median of
@@ -107,12 +109,7 @@ fn moves_by_another_way(
 fn shows_what_moves(sample: &PictureSample, base: &PictureSettings, tracing: &Tracing) -> bool {
     let trial = Trial::whole(sample, base, tracing.channel);
     let Some(still) = trial.first_sight(tracing) else { return false };
-    let others = trial.all_sights(tracing, OBJECTS).into_iter().filter_map(|sights| {
-        let others = sights.into_iter().filter(|sight| !lies_in_place_of(sight, &still));
-        others.max_by(|a, b| a.area.total_cmp(&b.area))
-    });
-    let other = evidence_of(&trial, *tracing, &others.collect::<Vec<_>>());
-    other.is_some_and(|other| !other.rests && other.score >= TracingChoice::CONVINCING)
+    largest_that_moves(&trial, tracing, |sight| !lies_in_place_of(sight, &still)).is_some()
 }
 
 /// The first way whose object leaves its place, where it is told beyond doubt, and hardly less well than what rests, the best. It has seen it whole,
