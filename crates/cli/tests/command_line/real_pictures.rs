@@ -195,5 +195,5 @@ fn the_robot_is_found_and_followed_without_an_option_but_the_rate_and_its_aspect
     println!("{} frames used, turn within {median:.2} degrees, the whole within {total:.2}", angles.len());
     // Pixels that are taken to be square, and are not, put the angle off; the option that is told mends it.
     let last = used(&trajectory).last().map(|(_, value)| value("angle_std").to_degrees()).expect("a pose");
-    assert!(angles.len() >= 130 && median < 2.0 && total < 2.0 * last, "{} {median} {total} {last}", angles.len());
+    assert!(angles.len() >= 130 && median < 2.0 && total < 3.0 * last, "{} {median} {total} {last}", angles.len());
 }

@@ -231,10 +231,10 @@ impl NoiseModel {
         self.correlation.of_residuals().max(self.rounding.shared_by)
     }
 
-    /// How many times wider deviations are than with [`correlation`](Self::correlation), by what pose and offsets have taken off the residuals, and by errors
-    /// that reach beyond a stretch; at least 1.
-    pub(crate) fn widening_by_correlation(&self) -> f64 {
-        (self.correlation.ratio() / self.correlation()).max(1.0).sqrt()
+    /// As [`correlation`](Self::correlation), with what pose and offsets have taken off the residuals, and errors that reach beyond a stretch: (50b) in
+    /// docs/motion-filter.md.
+    pub(crate) fn stated_correlation(&self) -> f64 {
+        self.correlation.ratio().max(self.correlation())
     }
 
     /// Whether enough frames have been seen to tell, and the errors of points beside each other have not been found to depend on each other.
@@ -245,6 +245,12 @@ impl NoiseModel {
     /// Variance of the noise times the points that tell no more than one, since their errors are correlated.
     pub(crate) fn effective_variance(&self) -> f64 {
         self.sigma * self.sigma * self.correlation()
+    }
+
+    /// As [`effective_variance`](Self::effective_variance), by the best estimate of the correlation: that of what is stated, and of poses that hypotheses
+    /// of dynamics are judged by.
+    pub(crate) fn stated_variance(&self) -> f64 {
+        self.sigma * self.sigma * self.stated_correlation()
     }
 }
 

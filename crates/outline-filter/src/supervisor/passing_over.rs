@@ -4,12 +4,13 @@ use super::{
     repeated_frames::BeforeRepeated,
     tracking::predict,
 };
-use crate::track::Track;
+use crate::{dynamics::DynamicsFilter, track::Track};
 
 impl MotionFilter {
-    /// Whether a frame that repeats the one before it need not show where the object is now: nothing says that it is at rest.
+    /// Whether a frame that repeats the one before it need not show where the object is now: nothing says that it is at rest, as where it turns round.
     pub(super) fn may_have_moved(&self) -> bool {
-        self.phase != Phase::Tracking || !self.track.as_ref().is_some_and(Track::is_known_to_rest)
+        let changes = self.history.dynamics.as_ref().is_some_and(DynamicsFilter::leads);
+        self.phase != Phase::Tracking || changes || !self.track.as_ref().is_some_and(Track::is_known_to_rest)
     }
 
     /// Moves on to the time of a frame that repeats the one before it.

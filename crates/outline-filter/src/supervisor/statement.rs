@@ -47,14 +47,11 @@ impl MotionFilter {
         let (model, centroid) = (self.settings.model, self.centroid_of(track));
         let none = CentredDeviations::zeros();
         let mut random = own;
-        let widening = track.noise().widening_by_correlation();
         let mut factors = CentredDeviations::from_element(1.0);
         if let Some(dynamics) = &self.history.dynamics {
             let summary = dynamics.combined((!dynamics.leads()).then_some(&own), Purpose::Statement).unwrap_or(own);
             (random, factors) = (summary, dynamics.factors());
         }
-        // What the innovations show of the correlation counts once.
-        factors = factors.map(|factor| factor.max(widening));
         random = random.widened(model, &centroid, &factors, [&none, &none])?;
         let mut body_frame = None;
         let beyond =

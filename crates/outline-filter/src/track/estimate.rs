@@ -47,7 +47,7 @@ impl Track {
 
     pub(super) fn summary_by(&self, marginal: &StateMatrix) -> Option<Summary> {
         let belief = &self.belief;
-        let covariance = scaled_inverse(marginal, belief.parameter_count())? * self.noise.effective_variance();
+        let covariance = scaled_inverse(marginal, belief.parameter_count())? * self.noise.stated_variance();
         let is_finite = covariance.iter().all(|e| e.is_finite());
         is_finite.then_some(Summary { pose: belief.pose, motion: belief.motion, covariance })
     }
@@ -216,7 +216,7 @@ impl Track {
         observable: [bool; MAX_PARAMETERS],
         turn: TurnOfPose,
     ) -> Option<MotionState> {
-        let (belief, variance, k) = (&self.belief, self.noise.effective_variance(), self.belief.parameter_count());
+        let (belief, variance, k) = (&self.belief, self.noise.stated_variance(), self.belief.parameter_count());
         let covariance = DMatrix::from_fn(2 * k, 2 * k, |i, j| summary.covariance[(i, j)]);
         let per_second = self.reference.per_second();
         // Motion by the second, pose as it is.

@@ -7,6 +7,7 @@ use super::{
     known_outline::{KnownOutline, KnownPiece},
 };
 use crate::{
+    belief::scaled_inverse,
     map::Cell,
     update::{hold, with_hold},
 };
@@ -47,8 +48,9 @@ impl Track {
     pub(crate) fn deviation_along_normals(&self) -> Option<f64> {
         let (belief, null) = (&self.belief, self.null_directions());
         let held = with_hold(&belief.marginal, hold(belief, &self.map, &null).as_ref());
-        let covariance = self.summary_by(&held)?.covariance;
         let k = belief.parameter_count();
+        // By what is beyond doubt of the correlation, as in all that decides what a frame may do.
+        let covariance = scaled_inverse(&held, k)? * self.noise.effective_variance();
         let inverse = belief.pose.try_inverse()?;
         let variance = |cell: &Cell| {
             let place = map_point(&belief.pose, &cell.centre);

@@ -126,7 +126,7 @@ impl Track {
     /// A pose over the noise, which its own points have told of as well, by (64a) in docs/motion-filter.md. What cells leave of an outline that shows
     /// no turn is off alike in all directions.
     fn over_noise(&self, measured: &PoseMeasurement) -> PoseMeasurement {
-        let (variance, inflation) = (self.noise.effective_variance(), self.noise_over_comparable().powi(-2));
+        let (variance, inflation) = (self.noise.stated_variance(), self.noise_over_comparable().powi(-2));
         if self.turn_is_unseen() {
             measured.over(variance * inflation, 1.0)
         } else {
@@ -136,7 +136,7 @@ impl Track {
 
     /// Variance that poses are compared by, (38) in docs/motion-filter.md.
     pub(super) fn comparable_variance(&self) -> f64 {
-        self.view().comparable_noise().powi(2) * self.noise.correlation()
+        self.view().comparable_noise().powi(2) * self.noise.stated_correlation()
     }
 
     /// Its noise over the least that poses are compared by, (38) in docs/motion-filter.md: at most 1.

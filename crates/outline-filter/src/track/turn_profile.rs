@@ -149,9 +149,8 @@ impl Track {
         let kept = points as f64 / points.div_ceil(ENOUGH_POINTS).max(1) as f64;
         let of_turn = of_turn * kept / points.max(1) as f64;
         // Of squares, as they are compared.
-        let correlation = self.noise.correlation();
-        let needed = NegativeLogLikelihood::significant(kept * correlation / tuning::MEMORY as f64);
-        let turn = (tuning::PROMISED * needed / (of_turn * correlation)).sqrt();
+        let needed = NegativeLogLikelihood::significant(kept * self.noise.correlation() / tuning::MEMORY as f64);
+        let turn = (tuning::PROMISED * needed / (of_turn * self.noise.stated_correlation())).sqrt();
         (turn <= tuning::LARGEST).then_some(turn)
     }
 
