@@ -62,7 +62,7 @@ impl<const N: usize> Hypothesis<N> {
         share: f64,
     ) {
         let k = Self::K;
-        if let Course::ConstantVelocity { of } = self.course {
+        if let Course::ConstantVelocity { of, .. } = self.course {
             let rates = self.rates(model) * of.off_centroid();
             let added = share * rates * rates.transpose();
             let mut block = self.covariance.fixed_view_mut::<2, 2>(3 * k - 2, 3 * k - 2);
@@ -82,7 +82,7 @@ mod tests {
     /// Begun with an arc of so many rates and a velocity of the centroid, its velocity then.
     fn begun<const N: usize>(model: MotionModel, motion: &[f64], covariance: SMatrix<f64, N, N>) -> Hypothesis<N> {
         let mean = SVector::from_fn(|i, _| if (N / 3..2 * N / 3).contains(&i) { motion[i - N / 3] } else { 0.0 });
-        let course = Course::ConstantVelocity { of: PointOfBody::NearCentroid };
+        let course = Course::straight(PointOfBody::NearCentroid);
         Hypothesis::begin((course, model), (mean, covariance), (&CentredVector::repeat(1.0), SECONDS))
     }
 

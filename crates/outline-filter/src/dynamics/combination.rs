@@ -104,9 +104,9 @@ impl<const N: usize> InteractingHypotheses<N> {
         for (hypothesis, weight) in self.hypotheses.iter().zip(&self.weights) {
             let turns = match hypothesis.course {
                 Course::ConstantGenerator => true,
-                Course::ConstantVelocity { of: PointOfBody::NearCentroid } => false,
-                // The centroid changes its velocity then, which is no change of this motion.
-                Course::ConstantVelocity { of: PointOfBody::Any }
+                course if course == Course::straight(PointOfBody::NearCentroid) => false,
+                // The centroid changes its velocity where a point aside keeps its own, which is no change of this motion.
+                Course::ConstantVelocity { .. }
                 | Course::Shaken { .. }
                 | Course::Accelerating { .. }
                 | Course::ChangingGenerator { .. }

@@ -111,8 +111,8 @@ mod tests {
 
     const COURSES: [Course; 9] = [
         Course::ConstantGenerator,
-        Course::ConstantVelocity { of: PointOfBody::NearCentroid },
-        Course::ConstantVelocity { of: PointOfBody::Any },
+        Course::straight(PointOfBody::NearCentroid),
+        Course::straight(PointOfBody::Any),
         Course::Shaken { deviations: 4.0 },
         Course::Accelerating { level: 1e-1, rates: true },
         Course::Accelerating { level: 1e1, rates: false },

@@ -35,7 +35,11 @@ pub(super) enum Course {
     },
     /// The velocity of a point of the object stays. In place of accelerations its state has the part of the velocity of the centroid that turns with the
     /// object.
-    ConstantVelocity { of: PointOfBody },
+    ConstantVelocity {
+        of: PointOfBody,
+        /// As those of [`Shaken`](Self::Shaken); none where the camera stands still.
+        deviations: f64,
+    },
     /// The accelerations change at random.
     Accelerating {
         /// Level of their density, in variances of a pose per fifth power of a step.
@@ -57,6 +61,11 @@ pub(super) enum Course {
 }
 
 impl Course {
+    /// The velocity of a point stays, seen by a camera that stands still.
+    pub(super) const fn straight(of: PointOfBody) -> Self {
+        Self::ConstantVelocity { of, deviations: 0.0 }
+    }
+
     /// What the hypotheses of a setting say that the motion does.
     pub(super) fn all_of(setting: Dynamics) -> Vec<Self> {
         let all = tuning::LEVELS.map(|level| Self::Accelerating { level, rates: true });
@@ -66,12 +75,14 @@ impl Course {
         match setting {
             Dynamics::Auto => {
                 let shaken = tuning::SHAKEN.map(|deviations| Self::Shaken { deviations });
-                let of_velocity = [PointOfBody::NearCentroid, PointOfBody::Any].map(|of| Self::ConstantVelocity { of });
+                let of_velocity = [PointOfBody::NearCentroid, PointOfBody::Any].map(Self::straight);
                 let constant = std::iter::once(Self::ConstantGenerator).chain(of_velocity);
-                constant.chain(shaken).chain(accelerating).collect()
+                let straight_and_shaken =
+                    Self::ConstantVelocity { of: PointOfBody::Any, deviations: tuning::SHAKEN_STRAIGHT };
+                constant.chain(shaken).chain([straight_and_shaken]).chain(accelerating).collect()
             }
             Dynamics::Generator => vec![Self::ConstantGenerator],
-            Dynamics::Velocity => vec![Self::ConstantVelocity { of: PointOfBody::NearCentroid }],
+            Dynamics::Velocity => vec![Self::straight(PointOfBody::NearCentroid)],
             Dynamics::Accelerating => accelerating.collect(),
         }
     }
@@ -98,8 +109,9 @@ impl Course {
         match self {
             Self::ConstantGenerator => tuning::PRIOR_OF_GENERATOR,
             Self::Shaken { .. } => tuning::PRIOR_OF_SHAKEN,
-            Self::ConstantVelocity { of: PointOfBody::NearCentroid } => tuning::PRIOR_OF_VELOCITY,
-            Self::ConstantVelocity { of: PointOfBody::Any } => tuning::PRIOR_OF_VELOCITY_OF_ANY,
+            Self::ConstantVelocity { .. } if self.is_shaken() => tuning::PRIOR_OF_SHAKEN,
+            Self::ConstantVelocity { of: PointOfBody::NearCentroid, .. } => tuning::PRIOR_OF_VELOCITY,
+            Self::ConstantVelocity { of: PointOfBody::Any, .. } => tuning::PRIOR_OF_VELOCITY_OF_ANY,
             Self::Accelerating { .. } | Self::ChangingGenerator { .. } => tuning::PRIOR_OF_EACH_LEVEL,
             Self::SteadyChange { .. } => 0.0,
         }
@@ -108,14 +120,19 @@ impl Course {
     /// Factor of the variance of a pose as the points of a frame tell it.
     pub(super) fn shaking(self) -> f64 {
         match self {
-            Self::Shaken { deviations } => 1.0 + deviations * deviations,
+            Self::Shaken { deviations } | Self::ConstantVelocity { deviations, .. } => 1.0 + deviations * deviations,
             _ => 1.0,
         }
     }
 
     /// Whether accelerations, the generator or the camera change at random.
     pub(super) fn changes_at_random(self) -> bool {
-        matches!(self, Self::Accelerating { .. } | Self::ChangingGenerator { .. } | Self::Shaken { .. })
+        self.is_shaken() || matches!(self, Self::Accelerating { .. } | Self::ChangingGenerator { .. })
+    }
+
+    /// Whether the camera shakes.
+    pub(super) fn is_shaken(self) -> bool {
+        self.shaking() > 1.0
     }
 
     /// Whether no part of the velocity of the centroid turns with the object, and the motion changes.

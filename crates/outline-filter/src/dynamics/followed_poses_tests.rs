@@ -25,6 +25,8 @@ struct Course {
     /// From the point that runs straight to the centroid, at first.
     aside: Vector2<f64>,
     jump: Vector2<f64>,
+    /// Errors of poses from the third frame on, in the deviations that are said of them.
+    errors: f64,
 }
 
 impl Course {
@@ -116,7 +118,7 @@ impl<'a> Run<'a> {
         assert!(filter.set_reference(&reference));
         let about_centroid = centred(reference).about_centroid(MODEL);
         let off = PoseError::from(MODEL.motion_between(&(truth * reference.try_inverse()?), 1.0)?);
-        let seen = about_centroid * off + noise(random);
+        let seen = about_centroid * off + course.errors * noise(random);
         let by_centroid = SMatrix::from_fn(|i, j| if i == j && i < PARAMETERS { 1.0 / (NOISE * NOISE) } else { 0.0 });
         let measured = PoseMeasurement {
             information: about_centroid.transpose() * by_centroid * about_centroid,
@@ -159,8 +161,13 @@ const LARGEST_MEAN_SQUARE: f64 = 1.5;
 
 #[test]
 fn the_velocity_of_a_body_that_has_been_put_aside_at_once_is_within_its_deviations_in_the_frames_after() {
-    let course =
-        Course { spin: 0.5, velocity: Vector2::new(1.2, 0.0), aside: Vector2::zeros(), jump: Vector2::new(0.6, 0.0) };
+    let course = Course {
+        spin: 0.5,
+        velocity: Vector2::new(1.2, 0.0),
+        aside: Vector2::zeros(),
+        jump: Vector2::new(0.6, 0.0),
+        errors: 1.0,
+    };
     let means = of_many_runs(&course, 30);
     for (frame, [square, _]) in means.iter().enumerate().skip(JUMP_AT + 4) {
         assert!(*square < LARGEST_MEAN_SQUARE, "frame {frame}: {square}");
@@ -178,15 +185,20 @@ fn check_straight(course: &Course, frames: usize, most: f64) {
         assert!(*square < LARGEST_MEAN_SQUARE, "frame {frame}: {square}");
     }
     // Of a line through n poses the slope has sqrt(12 / n^3) times the noise in a step; here the point is not known either.
-    let of_line = (12.0 / (frames as f64).powi(3)).sqrt() * NOISE / SECONDS;
+    let of_line = (12.0 / (frames as f64).powi(3)).sqrt() * course.errors * NOISE / SECONDS;
     let [_, deviation] = means[frames - 1];
     assert!(deviation < most * of_line, "{deviation} {of_line}");
 }
 
 #[test]
 fn the_velocity_of_a_body_whose_point_aside_runs_straight_is_known_as_well_as_its_poses_tell_it() {
-    let course =
-        Course { spin: 1.5, velocity: Vector2::new(1.2, 0.0), aside: Vector2::new(0.5, 0.0), jump: Vector2::zeros() };
+    let course = Course {
+        spin: 1.5,
+        velocity: Vector2::new(1.2, 0.0),
+        aside: Vector2::new(0.5, 0.0),
+        jump: Vector2::zeros(),
+        errors: 1.0,
+    };
     check_straight(&course, 40, 8.0);
 }
 
@@ -194,7 +206,23 @@ fn the_velocity_of_a_body_whose_point_aside_runs_straight_is_known_as_well_as_it
 /// centroid that runs straight, the deviation was 156 times that of a line, and is 4. Begun with the velocity at the end of an arc, mean squares were 4.
 #[test]
 fn the_velocity_of_a_body_whose_point_beside_its_centroid_runs_straight_is_known_as_well_as_its_poses_tell_it() {
-    let course =
-        Course { spin: 2.6, velocity: Vector2::new(1.2, 0.0), aside: Vector2::new(0.02, 0.0), jump: Vector2::zeros() };
+    let course = Course {
+        spin: 2.6,
+        velocity: Vector2::new(1.2, 0.0),
+        aside: Vector2::new(0.02, 0.0),
+        jump: Vector2::zeros(),
+        errors: 1.0,
+    };
     check_straight(&course, 60, 6.0);
+}
+
+/// Edges that are drawn without grey values put poses off by more than their points tell. Before a camera that shakes was reckoned with there, the motion
+/// seemed to change, and deviations were 161 times those of a line.
+#[test]
+fn the_velocity_of_a_body_whose_point_aside_runs_straight_is_known_also_where_poses_are_worse_than_is_said() {
+    let (spin, velocity, aside) = (1.5, Vector2::new(1.2, 0.0), Vector2::new(0.5, 0.0));
+    let course = Course { spin, velocity, aside, jump: Vector2::zeros(), errors: 2.5 };
+    let [square, deviation] = of_many_runs(&course, 60)[59];
+    let of_line = (12.0 / 60.0_f64.powi(3)).sqrt() * course.errors * NOISE / SECONDS;
+    assert!(square < LARGEST_MEAN_SQUARE && deviation < 20.0 * of_line, "{square} {deviation} {of_line}");
 }

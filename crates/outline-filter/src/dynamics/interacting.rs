@@ -23,7 +23,7 @@ use crate::tuning::saved_state::SUM_OFF;
 use crate::{belief::StateMatrix, map::NullDirection, tuning::dynamics as tuning, update::PoseMeasurement};
 
 /// Hypotheses at most.
-pub(super) const MOST: usize = 3
+pub(super) const MOST: usize = 4
     + tuning::SHAKEN.len()
     + (tuning::LEVELS.len() + tuning::LEVELS_OF_VELOCITY.len() + tuning::LEVELS_OF_GENERATOR.len());
 
@@ -247,8 +247,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             (logarithms[number], standardised[number]) = (logarithm, score);
         }
         if let Some(change) = &mut self.steady_change {
-            let is_velocity =
-                |h: &Hypothesis<N>| h.course == Course::ConstantVelocity { of: PointOfBody::NearCentroid };
+            let is_velocity = |h: &Hypothesis<N>| h.course == Course::straight(PointOfBody::NearCentroid);
             let velocity = self.hypotheses.iter().position(is_velocity);
             change.update(&measurement, velocity.map(|number| logarithms[number]));
         }

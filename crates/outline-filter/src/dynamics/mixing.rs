@@ -86,6 +86,7 @@ fn widens<const N: usize>(
 /// Probability, in a step, that a course is left for a certain other one.
 fn leaving(course: Course) -> f64 {
     match course {
+        Course::ConstantVelocity { .. } if course.is_shaken() => tuning::LEAVES_CHANGING,
         Course::ConstantGenerator | Course::ConstantVelocity { .. } | Course::SteadyChange { .. } => {
             tuning::LEAVES_CONSTANT
         }
@@ -99,6 +100,7 @@ fn leaving(course: Course) -> f64 {
 fn arriving(course: Course) -> f64 {
     match course {
         Course::Shaken { .. } => tuning::BEGINS_TO_SHAKE,
+        Course::ConstantVelocity { .. } if course.is_shaken() => tuning::BEGINS_TO_SHAKE,
         Course::ConstantGenerator | Course::ConstantVelocity { .. } => tuning::BECOMES_CONSTANT,
         Course::Accelerating { .. } | Course::ChangingGenerator { .. } | Course::SteadyChange { .. } => 1.0,
     }
@@ -261,8 +263,8 @@ mod tests {
     fn constant_motions_are_left_more_rarely_than_changing_ones() {
         let courses = [
             Course::ConstantGenerator,
-            Course::ConstantVelocity { of: PointOfBody::NearCentroid },
-            Course::ConstantVelocity { of: PointOfBody::Any },
+            Course::straight(PointOfBody::NearCentroid),
+            Course::straight(PointOfBody::Any),
             Course::Shaken { deviations: 4.0 },
             Course::Accelerating { level: 1e-1, rates: true },
             Course::Accelerating { level: 1e3, rates: false },

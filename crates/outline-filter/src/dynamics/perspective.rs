@@ -203,8 +203,8 @@ mod tests {
 
     const COURSES: [Course; 8] = [
         Course::ConstantGenerator,
-        Course::ConstantVelocity { of: PointOfBody::NearCentroid },
-        Course::ConstantVelocity { of: PointOfBody::Any },
+        Course::straight(PointOfBody::NearCentroid),
+        Course::straight(PointOfBody::Any),
         Course::Accelerating { level: 1e-1, rates: true },
         Course::Accelerating { level: 1e1, rates: false },
         Course::ChangingGenerator { level: 1e1 },

@@ -267,7 +267,7 @@ mod tests {
                 Course::Shaken { deviations: 4.0 },
                 Course::ChangingGenerator { level: 0.1 },
                 Course::SteadyChange { turns: true },
-                Course::ConstantVelocity { of: PointOfBody::Any },
+                Course::straight(PointOfBody::Any),
             ] {
                 let root = SMatrix::<f64, 18, 18>::from_fn(|i, j| (7.0 * numbers[(3 * i + 5 * j) % 40]).sin());
                 let mut hypothesis = Hypothesis::<18> { course, mean: SVector::zeros(), covariance: root * root.transpose() };
