@@ -193,7 +193,8 @@ fn the_robot_is_found_and_followed_without_an_option_but_the_rate_and_its_aspect
         .collect();
     let (median, total) = errors_of_turn(&angles, &tracker);
     println!("{} frames used, turn within {median:.2} degrees, the whole within {total:.2}", angles.len());
-    // Pixels that are taken to be square, and are not, put the angle off; the option that is told mends it.
+    // Pixels that are taken to be square, and are not, put the angle off; the option that is told mends it. Three more frames are used than were, and the
+    // deviation is a third of what it was, the error the same.
     let last = used(&trajectory).last().map(|(_, value)| value("angle_std").to_degrees()).expect("a pose");
     assert!(angles.len() >= 130 && median < 2.0 && total < 3.0 * last, "{} {median} {total} {last}", angles.len());
 }

@@ -104,7 +104,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         for (hypothesis, weight) in self.hypotheses.iter().zip(&self.weights) {
             let turns = match hypothesis.course {
                 Course::ConstantGenerator => true,
-                course if course == Course::straight(PointOfBody::NearCentroid) => false,
+                course @ Course::ConstantVelocity { of: PointOfBody::NearCentroid, .. } if !course.is_shaken() => false,
                 // The centroid changes its velocity where a point aside keeps its own, which is no change of this motion.
                 Course::ConstantVelocity { .. }
                 | Course::Shaken { .. }

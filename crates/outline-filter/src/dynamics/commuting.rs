@@ -109,10 +109,11 @@ mod tests {
     use super::*;
     use crate::dynamics::{CentredPose, centred::CentredVector, course::PointOfBody};
 
-    const COURSES: [Course; 9] = [
+    const COURSES: [Course; 10] = [
         Course::ConstantGenerator,
         Course::straight(PointOfBody::NearCentroid),
         Course::straight(PointOfBody::Any),
+        Course::ConstantVelocity { of: PointOfBody::Any, deviations: 2.0 },
         Course::Shaken { deviations: 4.0 },
         Course::Accelerating { level: 1e-1, rates: true },
         Course::Accelerating { level: 1e1, rates: false },

@@ -201,10 +201,11 @@ mod tests {
 
     type State = nalgebra::SVector<f64, 24>;
 
-    const COURSES: [Course; 8] = [
+    const COURSES: [Course; 9] = [
         Course::ConstantGenerator,
         Course::straight(PointOfBody::NearCentroid),
         Course::straight(PointOfBody::Any),
+        Course::ConstantVelocity { of: PointOfBody::Any, deviations: 2.0 },
         Course::Accelerating { level: 1e-1, rates: true },
         Course::Accelerating { level: 1e1, rates: false },
         Course::ChangingGenerator { level: 1e1 },

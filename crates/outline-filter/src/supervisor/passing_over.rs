@@ -9,7 +9,7 @@ use crate::{dynamics::DynamicsFilter, track::Track};
 impl MotionFilter {
     /// Whether a frame that repeats the one before it need not show where the object is now: nothing says that it is at rest, as where it turns round.
     pub(super) fn may_have_moved(&self) -> bool {
-        let changes = self.history.dynamics.as_ref().is_some_and(DynamicsFilter::leads);
+        let changes = self.history.dynamics.as_ref().is_some_and(DynamicsFilter::changes_at_random);
         self.phase != Phase::Tracking || changes || !self.track.as_ref().is_some_and(Track::is_known_to_rest)
     }
 

@@ -49,7 +49,7 @@ impl Track {
         let (belief, null) = (&self.belief, self.null_directions());
         let held = with_hold(&belief.marginal, hold(belief, &self.map, &null).as_ref());
         let k = belief.parameter_count();
-        // By what is beyond doubt of the correlation, as in all that decides what a frame may do.
+        // By what is beyond doubt of the correlation, as where it is decided which points agree: edges are looked for as far as that.
         let covariance = scaled_inverse(&held, k)? * self.noise.effective_variance();
         let inverse = belief.pose.try_inverse()?;
         let variance = |cell: &Cell| {

@@ -83,11 +83,12 @@ pub(crate) mod dynamics {
     /// Of each of [`SHAKEN`], and of [`SHAKEN_STRAIGHT`].
     pub(crate) const PRIOR_OF_SHAKEN: f64 = 0.002;
     pub(crate) const PRIOR_OF_EACH_LEVEL: f64 = 0.001;
-    /// How much a camera shakes, in deviations of a pose as the points of a frame tell it.
-    pub(crate) const SHAKEN: [f64; 2] = [4.0, 20.0];
+    /// How much a camera shakes, in deviations of a pose as the points of a frame tell it. The first is that of pictures whose edges are rounded: with
+    /// four as the least, steady turns in them were said to change.
+    pub(crate) const SHAKEN: [f64; 3] = [2.0, 4.0, 20.0];
     /// As that, of an object of which a point runs straight: edges that are drawn without grey values, or rounded otherwise, put poses off by two and more.
-    /// With four deviations were two to five times as wide where a smaller shake would do.
-    pub(crate) const SHAKEN_STRAIGHT: f64 = 2.0;
+    /// With four, deviations were two to five times as wide where a smaller shake explains the poses.
+    pub(crate) const SHAKEN_STRAIGHT: f64 = SHAKEN[0];
     /// Densities of the change of accelerations: in variances of a pose as a frame tells it, per fifth power of a step. The first remember some forty
     /// frames, fourteen and four, and tell poses apart by their variance hardly more than a constant motion does; the last remember none, as of bodies
     /// that are pushed. From the third on they are thirty times apart: where none fits, a constant motion explains turning points better, and

@@ -65,7 +65,7 @@ fn the_first_poses_are_within_their_deviations_where_errors_are_smooth_along_the
 }
 
 /// Neighbours in pictures share pixels. Before poses were judged by the best estimate of how far errors go together, a steady motion was taken for one
-/// that changes in a third of these recordings, and deviations of omega in pictures were up to ten times as wide for good.
+/// that changes in a third of these recordings.
 #[test]
 fn a_steady_turn_is_not_said_to_change_where_errors_of_neighbours_go_together() {
     let mut changed = 0;
@@ -84,7 +84,6 @@ fn a_steady_turn_is_not_said_to_change_where_errors_of_neighbours_go_together() 
         assert!(off.abs() < 4.0 * std, "seed {seed}: {off} {std}");
         changed += u32::from(run.motion_changed());
     }
-    println!("{changed}");
     assert!(changed <= 1, "{changed} of 24");
 }
 
