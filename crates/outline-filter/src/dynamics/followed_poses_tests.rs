@@ -30,6 +30,17 @@ struct Course {
 }
 
 impl Course {
+    /// So far aside of its centroid a point runs straight for good, seen as well as is said.
+    fn straight(spin: f64, aside: f64) -> Self {
+        let (velocity, aside) = (Vector2::new(1.2, 0.0), Vector2::new(aside, 0.0));
+        Self { spin, velocity, aside, jump: Vector2::zeros(), errors: 1.0 }
+    }
+
+    /// Of the slope of a line through n poses, which has sqrt(12 / n^3) times the noise in a step; here the point is not known either.
+    fn deviation_of_line(&self, frames: usize) -> f64 {
+        (12.0 / (frames as f64).powi(3)).sqrt() * self.errors * NOISE / SECONDS
+    }
+
     fn lever(&self, frame: usize) -> Vector2<f64> {
         Rotation2::new(self.spin * frame as f64 * SECONDS) * self.aside
     }
@@ -161,13 +172,7 @@ const LARGEST_MEAN_SQUARE: f64 = 1.5;
 
 #[test]
 fn the_velocity_of_a_body_that_has_been_put_aside_at_once_is_within_its_deviations_in_the_frames_after() {
-    let course = Course {
-        spin: 0.5,
-        velocity: Vector2::new(1.2, 0.0),
-        aside: Vector2::zeros(),
-        jump: Vector2::new(0.6, 0.0),
-        errors: 1.0,
-    };
+    let course = Course { jump: Vector2::new(0.6, 0.0), ..Course::straight(0.5, 0.0) };
     let means = of_many_runs(&course, 30);
     for (frame, [square, _]) in means.iter().enumerate().skip(JUMP_AT + 4) {
         assert!(*square < LARGEST_MEAN_SQUARE, "frame {frame}: {square}");
@@ -184,21 +189,14 @@ fn check_straight(course: &Course, frames: usize, most: f64) {
     for (frame, [square, _]) in means.iter().enumerate().skip(8) {
         assert!(*square < LARGEST_MEAN_SQUARE, "frame {frame}: {square}");
     }
-    // Of a line through n poses the slope has sqrt(12 / n^3) times the noise in a step; here the point is not known either.
-    let of_line = (12.0 / (frames as f64).powi(3)).sqrt() * course.errors * NOISE / SECONDS;
     let [_, deviation] = means[frames - 1];
+    let of_line = course.deviation_of_line(frames);
     assert!(deviation < most * of_line, "{deviation} {of_line}");
 }
 
 #[test]
 fn the_velocity_of_a_body_whose_point_aside_runs_straight_is_known_as_well_as_its_poses_tell_it() {
-    let course = Course {
-        spin: 1.5,
-        velocity: Vector2::new(1.2, 0.0),
-        aside: Vector2::new(0.5, 0.0),
-        jump: Vector2::zeros(),
-        errors: 1.0,
-    };
+    let course = Course::straight(1.5, 0.5);
     check_straight(&course, 40, 8.0);
 }
 
@@ -206,13 +204,7 @@ fn the_velocity_of_a_body_whose_point_aside_runs_straight_is_known_as_well_as_it
 /// centroid that runs straight, the deviation was 156 times that of a line, and is 4. Begun with the velocity at the end of an arc, mean squares were 4.
 #[test]
 fn the_velocity_of_a_body_whose_point_beside_its_centroid_runs_straight_is_known_as_well_as_its_poses_tell_it() {
-    let course = Course {
-        spin: 2.6,
-        velocity: Vector2::new(1.2, 0.0),
-        aside: Vector2::new(0.02, 0.0),
-        jump: Vector2::zeros(),
-        errors: 1.0,
-    };
+    let course = Course::straight(2.6, 0.02);
     check_straight(&course, 60, 6.0);
 }
 
@@ -220,9 +212,8 @@ fn the_velocity_of_a_body_whose_point_beside_its_centroid_runs_straight_is_known
 /// seemed to change, and deviations were 161 times those of a line.
 #[test]
 fn the_velocity_of_a_body_whose_point_aside_runs_straight_is_known_also_where_poses_are_worse_than_is_said() {
-    let (spin, velocity, aside) = (1.5, Vector2::new(1.2, 0.0), Vector2::new(0.5, 0.0));
-    let course = Course { spin, velocity, aside, jump: Vector2::zeros(), errors: 2.5 };
+    let course = Course { errors: 2.5, ..Course::straight(1.5, 0.5) };
     let [square, deviation] = of_many_runs(&course, 60)[59];
-    let of_line = (12.0 / 60.0_f64.powi(3)).sqrt() * course.errors * NOISE / SECONDS;
+    let of_line = course.deviation_of_line(60);
     assert!(square < LARGEST_MEAN_SQUARE && deviation < 20.0 * of_line, "{square} {deviation} {of_line}");
 }

@@ -7,7 +7,6 @@ use super::{
     known_outline::{KnownOutline, KnownPiece},
 };
 use crate::{
-    belief::scaled_inverse,
     map::Cell,
     update::{hold, with_hold},
 };
@@ -50,7 +49,7 @@ impl Track {
         let held = with_hold(&belief.marginal, hold(belief, &self.map, &null).as_ref());
         let k = belief.parameter_count();
         // By what is beyond doubt of the correlation, as where it is decided which points agree: edges are looked for as far as that.
-        let covariance = scaled_inverse(&held, k)? * self.noise.effective_variance();
+        let covariance = belief.covariance_of(&held, self.noise.effective_variance())?;
         let inverse = belief.pose.try_inverse()?;
         let variance = |cell: &Cell| {
             let place = map_point(&belief.pose, &cell.centre);

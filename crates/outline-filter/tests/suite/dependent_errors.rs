@@ -1,6 +1,7 @@
 //! Poses where the errors of points depend on each other: smooth along the contour, or by light from one side.
 use std::f64::consts::TAU;
 
+use freeform_curve_fit::Outline;
 use freeform_estimate::ParameterEstimate;
 use freeform_outline_filter::MotionFilter;
 use freeform_riccati::MotionModel;
@@ -39,6 +40,24 @@ fn pose_errors(run: &MotionFilter, turn: f64) -> Option<[f64; 3]> {
     Some([error / angle.standard_deviation, off.x / x.standard_deviation, off.y / y.standard_deviation])
 }
 
+/// A filter that has followed so many frames of a body that turns steadily, shown at each turn.
+fn turned(frames: u8, mut shown: impl FnMut(f64) -> Outline) -> MotionFilter {
+    let mut run = filter(MotionModel::Rigid);
+    for frame in 0..frames {
+        let outline = shown(TURN * f64::from(frame));
+        run.step(f64::from(frame) / FRAMES_PER_SECOND, &outline).expect("an outline");
+    }
+    run
+}
+
+/// Error of the omega that is stated, in its deviations.
+fn omega_error(run: &MotionFilter) -> f64 {
+    let omega = run.estimate().expect("an estimate").parameters().next().expect("omega");
+    // Clockwise.
+    let off = omega.value.expect("a turn") + TURN * FRAMES_PER_SECOND;
+    off / omega.standard_deviation.expect("a deviation")
+}
+
 /// Before what pose and outline take off the residuals was allowed for, and errors that reach beyond a stretch were seen, 314 of 360 numbers were held,
 /// and one was ten deviations off.
 #[test]
@@ -71,17 +90,12 @@ fn a_steady_turn_is_not_said_to_change_where_errors_of_neighbours_go_together() 
     let mut changed = 0;
     for seed in 0..24 {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let mut run = filter(MotionModel::Rigid);
-        for frame in 0..60_u8 {
+        let run = turned(60, |turn| {
             let errors = smooth_errors(3.0, &mut random);
-            let turn = TURN * f64::from(frame);
-            let outline = bent_outline(turn, 0.0, &mut random, |i, _| 0.004 * errors[i]);
-            run.step(f64::from(frame) / FRAMES_PER_SECOND, &outline).expect("an outline");
-        }
-        let omega = run.estimate().expect("an estimate").parameters().next().expect("omega");
-        let (off, std) =
-            (omega.value.expect("a turn") + TURN * FRAMES_PER_SECOND, omega.standard_deviation.expect("one"));
-        assert!(off.abs() < 4.0 * std, "seed {seed}: {off} {std}");
+            bent_outline(turn, 0.0, &mut random, |i, _| 0.004 * errors[i])
+        });
+        let off = omega_error(&run);
+        assert!(off.abs() < 4.0, "seed {seed}: {off}");
         changed += u32::from(run.motion_changed());
     }
     assert!(changed <= 1, "{changed} of 24");
@@ -91,13 +105,7 @@ fn a_steady_turn_is_not_said_to_change_where_errors_of_neighbours_go_together() 
 fn in_light(size: f64, seed: u64) -> MotionFilter {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let light = Rotation2::new(random.random_range(0.0..TAU)) * Vector2::x() * size;
-    let mut run = filter(MotionModel::Rigid);
-    for frame in 0..10_u8 {
-        let turn = TURN * f64::from(frame);
-        let outline = bent_outline(turn, NOISE, &mut random, |_, normal| normal.dot(&light).max(0.0));
-        run.step(f64::from(frame) / FRAMES_PER_SECOND, &outline).expect("an outline");
-    }
-    run
+    turned(10, |turn| bent_outline(turn, NOISE, &mut random, |_, normal| normal.dot(&light).max(0.0)))
 }
 
 /// Light that shifts the outline shows in other ways only once the body has turned in it. Before it was reckoned with beforehand, half of the recordings
@@ -107,9 +115,7 @@ fn the_motion_of_a_body_that_has_hardly_turned_in_light_is_within_its_deviations
     let mut errors = Vec::new();
     for seed in 0..12 {
         let run = in_light(0.03, seed);
-        let omega = run.estimate().expect("an estimate").parameters().next().expect("omega");
-        let off = omega.value.expect("a turn") + TURN * FRAMES_PER_SECOND;
-        errors.push(off / omega.standard_deviation.expect("a deviation"));
+        errors.push(omega_error(&run));
         let found = run.velocity().expect("a velocity");
         // Anticlockwise about the origin.
         let off = found.velocity - Vector2::new(-found.point.y, found.point.x) * (TURN * FRAMES_PER_SECOND);
