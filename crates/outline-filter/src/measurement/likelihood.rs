@@ -65,6 +65,11 @@ impl NegativeLogLikelihood {
         self.points > 0.0 && self.squares / self.points <= times * other.mean_square()
     }
 
+    /// The mean square of the innovations in that of another, which is noise at least; infinite where no points tell it.
+    pub(crate) fn mean_square_in(&self, other: &Self) -> f64 {
+        if self.points > 0.0 { self.squares / self.points / other.mean_square() } else { f64::INFINITY }
+    }
+
     /// The difference of squares that is significant between two poses, for so many points that count for one each: see
     /// [`is_worse_than`](Self::is_worse_than).
     pub(crate) fn significant(weighted: f64) -> f64 {

@@ -12,4 +12,4 @@ pub(crate) use landmarks::Landmarks;
 pub(crate) use nearby::displacement_nearby;
 pub(crate) use refinement::RegisteredPose;
 pub(crate) use registration::{Extent, Registration};
-pub(crate) use symmetry::symmetry_order;
+pub(crate) use symmetry::{TurnCentre, symmetry_order};

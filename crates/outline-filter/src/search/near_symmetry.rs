@@ -31,7 +31,7 @@ pub(super) fn turns_of_near_symmetry(model: MotionModel, found: &[RegisteredPose
 }
 
 /// The point that a rigid map leaves where it is; `None` where it is no turn.
-fn centre_of(step: &Matrix3<f64>) -> Option<Vector2<f64>> {
+pub(super) fn centre_of(step: &Matrix3<f64>) -> Option<Vector2<f64>> {
     let linear = step.fixed_view::<2, 2>(0, 0);
     Some((Matrix2::identity() - linear).try_inverse()? * step.fixed_view::<2, 1>(0, 2))
 }

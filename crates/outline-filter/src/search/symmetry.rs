@@ -1,44 +1,111 @@
 //! Turns that bring an outline onto itself.
-use nalgebra::Matrix3;
+use std::f64::consts::{PI, TAU};
 
+use freeform_riccati::MotionModel;
+use nalgebra::{Matrix3, Point2, Rotation2, Vector2};
+
+use super::{
+    near_symmetry::centre_of,
+    refinement::{Steps, refined},
+};
 use crate::{
+    map::map_between,
     measurement::{FirstPose, Frame},
     track::Track,
     tuning::symmetry as tuning,
 };
 
+/// What turns of an outline that may bring it onto itself are looked for about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum TurnCentre {
+    /// The middle of what has been seen of it.
+    Middle,
+    /// The point that the best of the turns about the middle brings it onto itself about: for an outline that has been seen from all sides, not alike.
+    /// Of a few frames that point says little: they would pass for symmetric that show no mark.
+    Found,
+}
+
 /// Order of the symmetry of an outline: the largest n for which the known outline turned by the n-th part of a circle explains a frame
 /// as well as it does in its pose, which is looked at first, and half of that turn does not; 1 where there is none, and where the outline is as good as
 /// round.
-pub(crate) fn symmetry_order(track: &Track, first: &FirstPose, pose: &Matrix3<f64>, frame: &mut Frame) -> usize {
+pub(crate) fn symmetry_order(
+    track: &Track,
+    first: &FirstPose,
+    (pose, about): (&Matrix3<f64>, TurnCentre),
+    frame: &mut Frame,
+) -> usize {
     if track.turn_is_unseen() {
         return 1;
     }
-    let mut as_good = |orders: Vec<usize>| -> Vec<usize> {
-        if orders.is_empty() {
-            return orders;
-        }
-        let turns = orders.iter().map(|n| track.turned(pose, std::f64::consts::TAU / *n as f64));
-        let turns: Vec<_> = turns.collect();
-        let likelihoods = track.compared_with(first, &turns, frame, tuning::FAR_WORSE * tuning::AS_GOOD);
-        let is_as_good = likelihoods[1..].iter().map(|other| other.is_within(tuning::AS_GOOD, &likelihoods[0]));
-        orders.into_iter().zip(is_as_good).filter_map(|(n, is_as_good)| is_as_good.then_some(n)).collect()
-    };
+    let primes: Vec<_> = (2..=tuning::LARGEST_ORDER).filter(|n| prime_factors(*n).next() == Some(*n)).collect();
+    let mut turned = Turned { track, first, pose, centre: None };
+    let of_primes = turned.mean_squares(&primes, frame);
+    let mut found = as_good(&primes, &of_primes);
+    if about == TurnCentre::Found
+        && let Some(centre) = turned.centre_of_best(&primes, &of_primes, &frame.points)
+    {
+        turned.centre = Some(centre);
+        found = as_good(&primes, &turned.mean_squares(&primes, frame));
+    }
     // What is turned onto itself by the n-th part of a circle is by that of every factor of n, too: the primes say what else may be.
-    let all = 2..=tuning::LARGEST_ORDER;
-    let mut found = as_good(all.clone().filter(|n| prime_factors(*n).next() == Some(*n)).collect());
     let may_be = |n: &usize| prime_factors(*n).all(|factor| factor < *n && found.contains(&factor));
-    let composite = as_good(all.filter(may_be).collect());
-    found.extend(composite);
+    let composite: Vec<_> = (2..=tuning::LARGEST_ORDER).filter(may_be).collect();
+    found.extend(as_good(&composite, &turned.mean_squares(&composite, frame)));
     if found.is_empty() {
         return 1;
     }
     found.sort_unstable_by(|a, b| b.cmp(a));
     // Turns that are too small for the frame to show are no symmetry: half of one of a symmetry is seen.
-    let halves: Vec<_> = found.iter().map(|n| track.turned(pose, std::f64::consts::PI / *n as f64)).collect();
+    let halves: Vec<_> = found.iter().map(|n| turned.by(PI / *n as f64)).collect();
     let likelihoods = track.compared_with(first, &halves, frame, tuning::FAR_WORSE * tuning::HALF_IS_WORSE);
     let seen = |at: &usize| !likelihoods[at + 1].is_within(tuning::HALF_IS_WORSE, &likelihoods[0]);
     (0..found.len()).find(seen).map_or(1, |at| found[at])
+}
+
+/// Those of some orders, with what their turns leave in what no turn does, that explain a frame as well.
+fn as_good(orders: &[usize], mean_squares: &[f64]) -> Vec<usize> {
+    orders.iter().zip(mean_squares).filter(|(_, times)| **times <= tuning::AS_GOOD).map(|(order, _)| *order).collect()
+}
+
+/// The outline of a track turned from a pose, which has been looked at first.
+struct Turned<'a> {
+    track: &'a Track,
+    first: &'a FirstPose,
+    pose: &'a Matrix3<f64>,
+    /// What it is turned about, in the body frame; the middle of what has been seen of it where that is `None`.
+    centre: Option<Vector2<f64>>,
+}
+
+impl Turned<'_> {
+    fn by(&self, angle: f64) -> Matrix3<f64> {
+        match &self.centre {
+            Some(centre) => self.pose * map_between(Rotation2::new(angle).matrix(), centre, centre),
+            None => self.track.turned(self.pose, angle),
+        }
+    }
+
+    /// Mean squares of the innovations after the n-th part of a circle, for some n, in that of the pose that has been looked at first.
+    fn mean_squares(&self, orders: &[usize], frame: &mut Frame) -> Vec<f64> {
+        if orders.is_empty() {
+            return Vec::new();
+        }
+        let poses: Vec<_> = orders.iter().map(|n| self.by(TAU / *n as f64)).collect();
+        let likelihoods = self.track.compared_with(self.first, &poses, frame, tuning::FAR_WORSE * tuning::AS_GOOD);
+        likelihoods[1..].iter().map(|other| other.mean_square_in(&likelihoods[0])).collect()
+    }
+
+    /// The point of the body that the best of some turns brings the outline onto itself about, found by bringing it onto the points of the frame. `None`
+    /// where no turn is nearly, but not quite, as good as none.
+    fn centre_of_best(&self, orders: &[usize], mean_squares: &[f64], points: &[Point2<f64>]) -> Option<Vector2<f64>> {
+        let are_in_doubt = mean_squares.iter().any(|times| (tuning::AS_GOOD..tuning::NEARLY_AS_GOOD).contains(times));
+        if !are_in_doubt || self.track.model() > MotionModel::Similarity {
+            return None;
+        }
+        let (best, _) = orders.iter().zip(mean_squares).min_by(|a, b| a.1.total_cmp(b.1))?;
+        let start = self.by(TAU / *best as f64);
+        let found = refined(self.track, points, MotionModel::Rigid, &start, Steps::REFINEMENT);
+        centre_of(&(self.pose.try_inverse()? * found.pose))
+    }
 }
 
 /// Prime factors of a number, each as often as it divides.

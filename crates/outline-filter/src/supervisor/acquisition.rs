@@ -10,7 +10,7 @@ use super::{
 use crate::{
     map::TurnEvent,
     measurement::{FirstPose, NegativeLogLikelihood, Tolerance},
-    search::{Extent, Landmarks, RegisteredPose, Registration, symmetry_order},
+    search::{Extent, Landmarks, RegisteredPose, Registration, TurnCentre, symmetry_order},
     track::{Comparison, Doubt, Outcome, Track},
     tuning::{
         supervisor::{FRAMES_OF_SEARCH, LARGEST_INNOVATION, UNSEEN_STEPS},
@@ -217,7 +217,7 @@ impl MotionFilter {
         let Some(track) = self.track.as_mut().filter(|track| !track.turn_is_unseen()) else { return candidates };
         let first = first.unwrap_or_else(|| track.first_of_compared(outline, &pose, &mut self.frame));
         if track.shows_turn_beside(&first, outline, &pose, &mut self.frame) {
-            let symmetry = symmetry_order(track, &first, &pose, &mut self.frame);
+            let symmetry = symmetry_order(track, &first, (&pose, TurnCentre::Middle), &mut self.frame);
             if symmetry == self.search_memory.symmetry {
                 return candidates;
             }

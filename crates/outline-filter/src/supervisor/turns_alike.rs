@@ -5,7 +5,7 @@ use freeform_curve_fit::Outline;
 
 use super::{motion_filter::MotionFilter, tracking::Turns};
 use crate::{
-    search::symmetry_order,
+    search::{TurnCentre, symmetry_order},
     tuning::{registration::LARGEST_NEAR_SYMMETRY, symmetry as tuning},
 };
 
@@ -42,7 +42,7 @@ impl MotionFilter {
         };
         let pose = track.body_pose();
         let first = track.first_of_compared(outline, pose, &mut self.frame);
-        let symmetry = symmetry_order(track, &first, pose, &mut self.frame);
+        let symmetry = symmetry_order(track, &first, (pose, TurnCentre::Found), &mut self.frame);
         if symmetry > 1 {
             self.search_memory.symmetry = symmetry;
             self.turn_hypotheses.name_symmetry(symmetry, turn, shortest);

@@ -139,7 +139,8 @@ pub(crate) fn gear_with_a_missing_tooth(teeth: u32) -> Vec<Point2<f64>> {
 #[test]
 fn gears_with_a_missing_tooth_of_which_a_third_is_hidden_turn_by_no_teeth_too_much() {
     let mut tally = Tally::default();
-    for seed in 0..48 {
+    // The last two are followed by teeth too many in the first frames: all teeth come to lie upon each other, more often on one side than on the other.
+    for seed in (0..48).chain([381, 421]) {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let (omega, teeth) = (random.random_range(-2.0..2.0), random.random_range(8..24));
         let gear = gear_with_a_missing_tooth(teeth);
@@ -150,6 +151,6 @@ fn gears_with_a_missing_tooth_of_which_a_third_is_hidden_turn_by_no_teeth_too_mu
         });
         tally.add(known, omega);
     }
-    // Of 600, seven are wrong: where the tooth that is missing shows in few frames, all teeth look alike, and a search keeps four of them.
-    assert!(tally.right >= 40 && tally.wrong <= 1, "{tally:?}");
+    // Of 600, 556 are right and none is wrong.
+    assert!(tally.right >= 40 && tally.wrong == 0, "{tally:?}");
 }
