@@ -186,6 +186,11 @@ impl Course {
         self.level().map_or(f64::INFINITY, |level| (tuning::MEMORY * level.powf(-1.0 / 6.0)).max(1.0))
     }
 
+    /// Whether rates change at random.
+    pub(super) fn has_rates_that_change(self) -> bool {
+        matches!(self, Self::Accelerating { rates: true, .. } | Self::ChangingGenerator { .. })
+    }
+
     /// Whether rates change, if accelerations do.
     pub(super) fn changes_rates(self) -> bool {
         !matches!(self, Self::Accelerating { rates: false, .. })

@@ -18,7 +18,7 @@ struct Pooled<const N: usize> {
 
 /// Takes every hypothesis to have been one of the others a step ago by chance; the probabilities sum up to one.
 ///
-/// The probability of a change is that the one course is left, times the share of changes that lead to the other, so that every mixture has
+/// The probability of a change is that the one course is left, times the share of changes that lead to the other. Every mixture has
 /// two parts: the hypothesis itself, and all that have changed together. They are blended, or kept apart as `arrivals` where that is asked for and
 /// matters.
 pub(super) fn mix<const N: usize>(
@@ -34,8 +34,18 @@ pub(super) fn mix<const N: usize>(
     let with_all = Pooled::of(hypotheses, weights, model);
     let of_velocity = with_all.of_velocity(hypotheses, weights, model);
     let of_generator = with_all.of_generator(hypotheses, weights, model);
-    let all: f64 = changing(hypotheses, weights).map(|(_, weight)| weight).sum();
-    let shares: f64 = hypotheses.iter().map(|hypothesis| arriving(hypothesis.course)).sum();
+    // A motion whose rates change looks for some frames as if they did not, and each of these frames speaks for that by as much for every rate.
+    let keeps_rates = tuning::BECOMES_CONSTANT.powi(N as i32 / 3 - 3);
+    let left_for = |changes_rates: bool, course: Course| {
+        arriving(course) * if changes_rates && !course.has_rates_that_change() { keeps_rates } else { 1.0 }
+    };
+    let [leave_constant, leave_changing] = [false, true].map(|changes_rates| {
+        let sources = changing(hypotheses, weights).filter(|(h, _)| h.course.has_rates_that_change() == changes_rates);
+        sources.map(|(_, weight)| weight).sum::<f64>()
+    });
+    let shares = [false, true].map(|changes_rates| {
+        hypotheses.iter().map(|hypothesis| left_for(changes_rates, hypothesis.course)).sum::<f64>()
+    });
     for (number, (hypothesis, weight)) in hypotheses.iter_mut().zip(weights).enumerate() {
         let of_all = match Accelerations::of(hypothesis.course) {
             Accelerations::OfVelocity => &of_velocity,
@@ -43,8 +53,9 @@ pub(super) fn mix<const N: usize>(
             Accelerations::All | Accelerations::None => &with_all,
         };
         // Of what has changed, this hypothesis takes its own part back.
-        let stays = *weight * (1.0 - shares * leaving(hypothesis.course));
-        let taken = all * arriving(hypothesis.course);
+        let course = hypothesis.course;
+        let stays = *weight * (1.0 - shares[usize::from(course.has_rates_that_change())] * leaving(course));
+        let taken = leave_constant * left_for(false, course) + leave_changing * left_for(true, course);
         *weight = taken + stays;
         let share = taken / *weight;
         match &mut arrivals {
@@ -291,6 +302,31 @@ mod tests {
         let [generator, velocity, of_any, shaken, middle, high] = left;
         assert!(generator == velocity && velocity == of_any && middle == high, "{left:?}");
         assert!(generator > 0.0 && 50.0 * generator < middle.min(shaken), "{left:?}");
+    }
+
+    #[test]
+    fn rates_that_change_stay_from_now_on_the_more_rarely_the_more_of_them_there_are() {
+        let courses = Course::all_of(Dynamics::Auto);
+        let changing = courses.iter().position(|course| course.has_rates_that_change()).expect("one of them");
+        let of = |course: &Course| Hypothesis::<18> {
+            course: *course,
+            mean: SVector::zeros(),
+            covariance: SMatrix::identity(),
+        };
+        let after = |leaves: usize| {
+            let mut hypotheses: Vec<_> = courses.iter().map(of).collect();
+            let mut weights: Vec<_> = (0..courses.len()).map(|number| f64::from(u8::from(number == leaves))).collect();
+            mix(&mut hypotheses, &mut weights, MotionModel::Affine, (&CentredVector::repeat(1e-4), 0.1), None);
+            assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{weights:?}");
+            weights
+        };
+        // Affine motion has three rates more than rigid motion. The first hypothesis has a constant generator.
+        let (of_changing, of_constant) = (after(changing), after(0));
+        for number in (1..courses.len()).filter(|number| *number != changing) {
+            let times = of_changing[number] / of_constant[number] * tuning::LEAVES_CONSTANT / tuning::LEAVES_CHANGING;
+            let expected = if courses[number].has_rates_that_change() { 1.0 } else { tuning::BECOMES_CONSTANT.powi(3) };
+            assert!((times / expected - 1.0).abs() < 1e-9, "{:?}: {times}", courses[number]);
+        }
     }
 
     #[test]

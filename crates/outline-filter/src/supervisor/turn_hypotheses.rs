@@ -87,8 +87,11 @@ impl TurnHypotheses {
             return;
         }
         self.count_over(turn, seconds);
-        self.rival_turns.push(turn - angle.copysign(turn));
-        self.rivals.push(TurnHypothesis::new(None, NegativeLogLikelihood::default(), Reason::Symmetry));
+        let other = turn - angle.copysign(turn);
+        if self.rival_turns.iter().all(|rival| (rival - other).abs() > self.symmetry_angle.different_turn()) {
+            self.rival_turns.push(other);
+            self.rivals.push(TurnHypothesis::new(None, NegativeLogLikelihood::default(), Reason::Symmetry));
+        }
     }
 
     /// Names the turns that look like that of the present track, over so long a time, of an outline that has been found to have a symmetry of some order
