@@ -200,7 +200,7 @@ impl<'a> Reader<'a> {
 /// In which frames objects were found by their edges, in place of outlines.
 fn edge_notes(seeker: &EdgeSeeker) -> Vec<String> {
     let reason =
-        "it was not found as a whole, and parts of it were found by their edges where it was expected, in frames";
+        "it was not found as a whole, and parts of it were found by their edges where it was expected, in frame(s)";
     let mut notes: Vec<String> =
         seeker.found().map(|(name, frames)| format!("object {}: {reason} {frames}", readable(name))).collect();
     if seeker.frames_of_others() > 0 {

@@ -52,7 +52,7 @@ fn a_larger_object_beside_does_not_hide_the_one_that_is_followed() {
         told.contains("object 0: it was not found as a whole, and parts of it were found by their edges"),
         "{told}"
     );
-    assert!(told.contains("in frames 15-24\n"), "{told}");
+    assert!(told.contains("in frame(s) 15-24\n"), "{told}");
     // The same frame by frame.
     let lines = succeed(&format!("track {frames} --light --fps 30 --quiet"), "");
     assert_eq!(lines.lines().filter(|line| line.contains("\"accepted\":true")).count(), FRAMES as usize);

@@ -22,6 +22,13 @@ impl PointOfBody {
     }
 }
 
+/// What the rates of a motion do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Rates {
+    Stay,
+    ChangeAtRandom,
+}
+
 /// What the motion does between frames.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -186,9 +193,12 @@ impl Course {
         self.level().map_or(f64::INFINITY, |level| (tuning::MEMORY * level.powf(-1.0 / 6.0)).max(1.0))
     }
 
-    /// Whether rates change at random.
-    pub(super) fn has_rates_that_change(self) -> bool {
-        matches!(self, Self::Accelerating { rates: true, .. } | Self::ChangingGenerator { .. })
+    /// What its rates do. Those of a steady change have no random part.
+    pub(super) fn rates(self) -> Rates {
+        match self {
+            Self::Accelerating { rates: true, .. } | Self::ChangingGenerator { .. } => Rates::ChangeAtRandom,
+            _ => Rates::Stay,
+        }
     }
 
     /// Whether rates change, if accelerations do.

@@ -3,7 +3,11 @@ use freeform_riccati::MotionModel;
 use nalgebra::{SMatrix, SVector};
 
 use super::{
-    accelerations::Accelerations, arrival::Arrival, centred::CentredVector, course::Course, hypothesis::Hypothesis,
+    accelerations::Accelerations,
+    arrival::Arrival,
+    centred::CentredVector,
+    course::{Course, Rates},
+    hypothesis::Hypothesis,
     interacting::MOST,
 };
 use crate::{tuning::dynamics as tuning, vectors::vectorised};
@@ -19,7 +23,7 @@ struct Pooled<const N: usize> {
 /// Takes every hypothesis to have been one of the others a step ago by chance; the probabilities sum up to one.
 ///
 /// The probability of a change is that the one course is left, times the share of changes that lead to the other. Every mixture has
-/// two parts: the hypothesis itself, and all that have changed together. They are blended, or kept apart as `arrivals` where that is asked for and
+/// two parts: the hypothesis itself, and all that have changed together. The state of those is that of all that leave their courses, wherever they lead. They are blended, or kept apart as `arrivals` where that is asked for and
 /// matters.
 pub(super) fn mix<const N: usize>(
     hypotheses: &mut [Hypothesis<N>],
@@ -34,18 +38,15 @@ pub(super) fn mix<const N: usize>(
     let with_all = Pooled::of(hypotheses, weights, model);
     let of_velocity = with_all.of_velocity(hypotheses, weights, model);
     let of_generator = with_all.of_generator(hypotheses, weights, model);
-    // A motion whose rates change looks for some frames as if they did not, and each of these frames speaks for that by as much for every rate.
-    let keeps_rates = tuning::BECOMES_CONSTANT.powi(N as i32 / 3 - 3);
-    let left_for = |changes_rates: bool, course: Course| {
-        arriving(course) * if changes_rates && !course.has_rates_that_change() { keeps_rates } else { 1.0 }
-    };
-    let [leave_constant, leave_changing] = [false, true].map(|changes_rates| {
-        let sources = changing(hypotheses, weights).filter(|(h, _)| h.course.has_rates_that_change() == changes_rates);
+    // All that leave their courses in this step, and the sum of the shares of changes from one of them to all.
+    let leaving_of = |of: Rates| {
+        let sources = changing(hypotheses, weights).filter(|(hypothesis, _)| hypothesis.course.rates() == of);
         sources.map(|(_, weight)| weight).sum::<f64>()
-    });
-    let shares = [false, true].map(|changes_rates| {
-        hypotheses.iter().map(|hypothesis| left_for(changes_rates, hypothesis.course)).sum::<f64>()
-    });
+    };
+    let shares_of =
+        |from: Rates| hypotheses.iter().map(|hypothesis| share_of_changes::<N>(from, hypothesis.course)).sum::<f64>();
+    let [(steady, from_steady), (varying, from_varying)] =
+        [Rates::Stay, Rates::ChangeAtRandom].map(|rates| (leaving_of(rates), shares_of(rates)));
     for (number, (hypothesis, weight)) in hypotheses.iter_mut().zip(weights).enumerate() {
         let of_all = match Accelerations::of(hypothesis.course) {
             Accelerations::OfVelocity => &of_velocity,
@@ -54,8 +55,13 @@ pub(super) fn mix<const N: usize>(
         };
         // Of what has changed, this hypothesis takes its own part back.
         let course = hypothesis.course;
-        let stays = *weight * (1.0 - shares[usize::from(course.has_rates_that_change())] * leaving(course));
-        let taken = leave_constant * left_for(false, course) + leave_changing * left_for(true, course);
+        let shares = match course.rates() {
+            Rates::Stay => from_steady,
+            Rates::ChangeAtRandom => from_varying,
+        };
+        let stays = *weight * (1.0 - shares * leaving(course));
+        let taken = steady * share_of_changes::<N>(Rates::Stay, course)
+            + varying * share_of_changes::<N>(Rates::ChangeAtRandom, course);
         *weight = taken + stays;
         let share = taken / *weight;
         match &mut arrivals {
@@ -114,6 +120,17 @@ fn arriving(course: Course) -> f64 {
         Course::ConstantVelocity { .. } if course.is_shaken() => tuning::BEGINS_TO_SHAKE,
         Course::ConstantGenerator | Course::ConstantVelocity { .. } => tuning::BECOMES_CONSTANT,
         Course::Accelerating { .. } | Course::ChangingGenerator { .. } | Course::SteadyChange { .. } => 1.0,
+    }
+}
+
+/// How often a change from a course whose rates do something leads to another, relative to those that lead to accelerations, in a model of N / 3
+/// parameters.
+fn share_of_changes<const N: usize>(from: Rates, to: Course) -> f64 {
+    // Two of the parameters are the velocity. The first rate, the turn of rigid motion, is in `arriving`.
+    let further_rates = N as i32 / 3 - 3;
+    match (from, to.rates()) {
+        (Rates::ChangeAtRandom, Rates::Stay) => arriving(to) * tuning::RATES_STAY.powi(further_rates),
+        _ => arriving(to),
     }
 }
 
@@ -304,28 +321,43 @@ mod tests {
         assert!(generator > 0.0 && 50.0 * generator < middle.min(shaken), "{left:?}");
     }
 
-    #[test]
-    fn rates_that_change_stay_from_now_on_the_more_rarely_the_more_of_them_there_are() {
+    /// Weights after a step of all hypotheses of a model, of which one has had all of the probability.
+    fn after<const N: usize>(model: MotionModel, leaves: Course) -> Vec<(Course, f64)> {
         let courses = Course::all_of(Dynamics::Auto);
-        let changing = courses.iter().position(|course| course.has_rates_that_change()).expect("one of them");
-        let of = |course: &Course| Hypothesis::<18> {
+        let of = |course: &Course| Hypothesis::<N> {
             course: *course,
             mean: SVector::zeros(),
             covariance: SMatrix::identity(),
         };
-        let after = |leaves: usize| {
-            let mut hypotheses: Vec<_> = courses.iter().map(of).collect();
-            let mut weights: Vec<_> = (0..courses.len()).map(|number| f64::from(u8::from(number == leaves))).collect();
-            mix(&mut hypotheses, &mut weights, MotionModel::Affine, (&CentredVector::repeat(1e-4), 0.1), None);
-            assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{weights:?}");
-            weights
-        };
-        // Affine motion has three rates more than rigid motion. The first hypothesis has a constant generator.
-        let (of_changing, of_constant) = (after(changing), after(0));
-        for number in (1..courses.len()).filter(|number| *number != changing) {
-            let times = of_changing[number] / of_constant[number] * tuning::LEAVES_CONSTANT / tuning::LEAVES_CHANGING;
-            let expected = if courses[number].has_rates_that_change() { 1.0 } else { tuning::BECOMES_CONSTANT.powi(3) };
-            assert!((times / expected - 1.0).abs() < 1e-9, "{:?}: {times}", courses[number]);
+        let mut hypotheses: Vec<_> = courses.iter().map(of).collect();
+        let mut weights: Vec<_> = courses.iter().map(|course| f64::from(u8::from(*course == leaves))).collect();
+        mix(&mut hypotheses, &mut weights, model, (&CentredVector::repeat(1e-4), 0.1), None);
+        assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{model:?}: {weights:?}");
+        courses.into_iter().zip(weights).collect()
+    }
+
+    #[test]
+    fn rates_that_change_stay_from_now_on_the_more_rarely_the_more_of_them_there_are() {
+        let varying = Course::Accelerating { level: tuning::LEVELS[0], rates: true };
+        let camera = Course::Shaken { deviations: tuning::SHAKEN[0] };
+        let models = [
+            (after::<9>(MotionModel::Rigid, varying), after::<9>(MotionModel::Rigid, camera), 0),
+            (after::<12>(MotionModel::Similarity, varying), after::<12>(MotionModel::Similarity, camera), 1),
+            (after::<18>(MotionModel::Affine, varying), after::<18>(MotionModel::Affine, camera), 3),
+            (after::<24>(MotionModel::Projective, varying), after::<24>(MotionModel::Projective, camera), 5),
+        ];
+        // Both are left as often.
+        for (of_varying, of_camera, further_rates) in models {
+            for ((course, from_varying), (_, from_camera)) in of_varying.into_iter().zip(of_camera) {
+                if course == varying || course == camera {
+                    continue;
+                }
+                let expected = match course.rates() {
+                    Rates::Stay => tuning::RATES_STAY.powi(further_rates),
+                    Rates::ChangeAtRandom => 1.0,
+                };
+                assert!((from_varying / from_camera / expected - 1.0).abs() < 1e-9, "{course:?}: {from_varying}");
+            }
         }
     }
 

@@ -62,11 +62,11 @@ impl NegativeLogLikelihood {
 
     /// Whether the mean square of the innovations is no more than so many times that of another, which is noise at least.
     pub(crate) fn is_within(&self, times: f64, other: &Self) -> bool {
-        self.points > 0.0 && self.squares / self.points <= times * other.mean_square()
+        self.mean_square_over(other) <= times
     }
 
-    /// The mean square of the innovations in that of another, which is noise at least; infinite where no points tell it.
-    pub(crate) fn mean_square_in(&self, other: &Self) -> f64 {
+    /// Mean square of the innovations over that of another, which is noise at least; infinite where there are no points.
+    pub(crate) fn mean_square_over(&self, other: &Self) -> f64 {
         if self.points > 0.0 { self.squares / self.points / other.mean_square() } else { f64::INFINITY }
     }
 

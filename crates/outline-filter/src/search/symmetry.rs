@@ -11,17 +11,18 @@ use super::{
 use crate::{
     map::map_between,
     measurement::{FirstPose, Frame},
-    track::Track,
+    track::{Track, wrapped},
     tuning::symmetry as tuning,
 };
 
-/// What turns of an outline that may bring it onto itself are looked for about.
+/// Which point the turns are about that may bring an outline onto itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum TurnCentre {
     /// The middle of what has been seen of it.
     Middle,
-    /// The point that the best of the turns about the middle brings it onto itself about: for an outline that has been seen from all sides, not alike.
-    /// Of a few frames that point says little: they would pass for symmetric that show no mark.
+    /// The fixed point of the best turn about the middle, once that has been refined to the frame: for outlines of which some parts have been seen more
+    /// often than others. After few frames that point is not known, and outlines that have shown no mark yet would pass for symmetric. An outline that
+    /// may be stretched is turned about its middle all the same: its turns are none of the picture.
     Found,
 }
 
@@ -39,18 +40,21 @@ pub(crate) fn symmetry_order(
     }
     let primes: Vec<_> = (2..=tuning::LARGEST_ORDER).filter(|n| prime_factors(*n).next() == Some(*n)).collect();
     let mut turned = Turned { track, first, pose, centre: None };
-    let of_primes = turned.mean_squares(&primes, frame);
-    let mut found = as_good(&primes, &of_primes);
+    let mut of_primes = turned.mean_squares(&primes, frame, about);
     if about == TurnCentre::Found
         && let Some(centre) = turned.centre_of_best(&primes, &of_primes, &frame.points)
     {
-        turned.centre = Some(centre);
-        found = as_good(&primes, &turned.mean_squares(&primes, frame));
+        let about_centre = Turned { centre: Some(centre), ..turned };
+        let of_centre = about_centre.mean_squares(&primes, frame, about);
+        if least(&of_centre) < least(&of_primes) {
+            (turned, of_primes) = (about_centre, of_centre);
+        }
     }
+    let mut found = as_good(&primes, &of_primes);
     // What is turned onto itself by the n-th part of a circle is by that of every factor of n, too: the primes say what else may be.
     let may_be = |n: &usize| prime_factors(*n).all(|factor| factor < *n && found.contains(&factor));
     let composite: Vec<_> = (2..=tuning::LARGEST_ORDER).filter(may_be).collect();
-    found.extend(as_good(&composite, &turned.mean_squares(&composite, frame)));
+    found.extend(as_good(&composite, &turned.mean_squares(&composite, frame, about)));
     if found.is_empty() {
         return 1;
     }
@@ -67,7 +71,12 @@ fn as_good(orders: &[usize], mean_squares: &[f64]) -> Vec<usize> {
     orders.iter().zip(mean_squares).filter(|(_, times)| **times <= tuning::AS_GOOD).map(|(order, _)| *order).collect()
 }
 
+fn least(mean_squares: &[f64]) -> f64 {
+    mean_squares.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
 /// The outline of a track turned from a pose, which has been looked at first.
+#[derive(Clone, Copy)]
 struct Turned<'a> {
     track: &'a Track,
     first: &'a FirstPose,
@@ -85,26 +94,34 @@ impl Turned<'_> {
     }
 
     /// Mean squares of the innovations after the n-th part of a circle, for some n, in that of the pose that has been looked at first.
-    fn mean_squares(&self, orders: &[usize], frame: &mut Frame) -> Vec<f64> {
+    fn mean_squares(&self, orders: &[usize], frame: &mut Frame, about: TurnCentre) -> Vec<f64> {
         if orders.is_empty() {
             return Vec::new();
         }
         let poses: Vec<_> = orders.iter().map(|n| self.by(TAU / *n as f64)).collect();
-        let likelihoods = self.track.compared_with(self.first, &poses, frame, tuning::FAR_WORSE * tuning::AS_GOOD);
-        likelihoods[1..].iter().map(|other| other.mean_square_in(&likelihoods[0])).collect()
+        // Beyond the limit they are those of a first look, which stops there.
+        let limit = match about {
+            TurnCentre::Middle => tuning::AS_GOOD,
+            TurnCentre::Found => tuning::NEARLY_AS_GOOD,
+        };
+        let likelihoods = self.track.compared_with(self.first, &poses, frame, tuning::FAR_WORSE * limit);
+        likelihoods[1..].iter().map(|other| other.mean_square_over(&likelihoods[0])).collect()
     }
 
-    /// The point of the body that the best of some turns brings the outline onto itself about, found by bringing it onto the points of the frame. `None`
-    /// where no turn is nearly, but not quite, as good as none.
+    /// The fixed point of the best of some turns, refined to the points of the frame, in the body frame. `None` where no turn is in doubt, which is
+    /// nearly, but not quite, as good as none; and where the refinement has led to another turn, or to a point aside of the outline's middle.
     fn centre_of_best(&self, orders: &[usize], mean_squares: &[f64], points: &[Point2<f64>]) -> Option<Vector2<f64>> {
         let are_in_doubt = mean_squares.iter().any(|times| (tuning::AS_GOOD..tuning::NEARLY_AS_GOOD).contains(times));
         if !are_in_doubt || self.track.model() > MotionModel::Similarity {
             return None;
         }
         let (best, _) = orders.iter().zip(mean_squares).min_by(|a, b| a.1.total_cmp(b.1))?;
-        let start = self.by(TAU / *best as f64);
-        let found = refined(self.track, points, MotionModel::Rigid, &start, Steps::REFINEMENT);
-        centre_of(&(self.pose.try_inverse()? * found.pose))
+        let angle = TAU / *best as f64;
+        let found = refined(self.track, points, MotionModel::Rigid, &self.by(angle), Steps::REFINEMENT);
+        let step = self.pose.try_inverse()? * found.pose;
+        let is_same_turn = wrapped(step[(1, 0)].atan2(step[(0, 0)]) - angle).abs() < tuning::SAME * angle;
+        let centre = centre_of(&step).filter(|_| is_same_turn)?;
+        ((centre - self.track.map().centroid().coords).norm() < tuning::OFF_MIDDLE).then_some(centre)
     }
 }
 

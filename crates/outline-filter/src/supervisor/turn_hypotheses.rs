@@ -87,11 +87,7 @@ impl TurnHypotheses {
             return;
         }
         self.count_over(turn, seconds);
-        let other = turn - angle.copysign(turn);
-        if self.rival_turns.iter().all(|rival| (rival - other).abs() > self.symmetry_angle.different_turn()) {
-            self.rival_turns.push(other);
-            self.rivals.push(TurnHypothesis::new(None, NegativeLogLikelihood::default(), Reason::Symmetry));
-        }
+        self.name_alike(turn - angle.copysign(turn));
     }
 
     /// Names the turns that look like that of the present track, over so long a time, of an outline that has been found to have a symmetry of some order
@@ -127,12 +123,19 @@ impl TurnHypotheses {
                 hypothesis.reason = Reason::Symmetry;
             }
         }
-        let different_turn = self.symmetry_angle.different_turn();
         for turn in self.symmetry_angle.turns_like(self.present_turn) {
-            if self.rival_turns.iter().all(|other| (other - turn).abs() > different_turn) {
+            self.name_alike(turn);
+        }
+    }
+
+    /// Names a turn that looks like the present one: that of a rival which has it already is one that no frame decides against.
+    fn name_alike(&mut self, turn: f64) {
+        let different_turn = self.symmetry_angle.different_turn();
+        match self.rival_turns.iter().position(|other| (other - turn).abs() <= different_turn) {
+            Some(index) => self.rivals[index].reason = Reason::Symmetry,
+            None => {
                 self.rival_turns.push(turn);
-                let likelihood = NegativeLogLikelihood::default();
-                self.rivals.push(TurnHypothesis::new(None, likelihood, Reason::Symmetry));
+                self.rivals.push(TurnHypothesis::new(None, NegativeLogLikelihood::default(), Reason::Symmetry));
             }
         }
     }

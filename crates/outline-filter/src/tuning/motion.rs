@@ -69,9 +69,12 @@ pub(crate) mod dynamics {
     /// As that, of a motion that changes already: most of those go on to.
     pub(crate) const LEAVES_CHANGING: f64 = 0.000_15;
     /// How often a motion that changes becomes constant, for one change of how it changes. A body that swings looks for three or four frames at its
-    /// turning points like one of a constant motion, and every frame of that speaks for it by up to sixty to one. Where
-    /// rates that have changed stay from then on, as much again for every rate of the model beyond the first: each of them speaks for that.
+    /// turning points like one of a constant motion, and every frame of that speaks for it by up to sixty to one.
     pub(crate) const BECOMES_CONSTANT: f64 = 0.1;
+    /// How often rates that change stay from then on, as that, for every rate of the model beyond the first, as each of them speaks for that in each of
+    /// these frames: similarities have one more, affine motion three, projective motion five. So affine motion that stops must be a thousand times as
+    /// probable by its frames, which are one or two more.
+    pub(crate) const RATES_STAY: f64 = 0.1;
     /// How often a camera begins to shake, as that: cameras that shake do so from the start. A motion that changes again, or
     /// slowly, looks for some frames like one seen by a camera that shakes.
     pub(crate) const BEGINS_TO_SHAKE: f64 = 0.0001;

@@ -293,9 +293,12 @@ pub(crate) mod symmetry {
     /// Mean square of the innovations of a turned outline, in those of the outline as it is, up to which it is symmetric within its
     /// noise: noise and straight cells make as much of one, and a tooth that is missing much more.
     pub(crate) const AS_GOOD: f64 = 1.5;
-    /// As [`AS_GOOD`], up to which a turn may be as good about another centre than the middle of what has been seen: a gear of twenty teeth of which
-    /// some have been seen twice as well as others has 1.6, outlines without a symmetry have 3 and more.
+    /// As [`AS_GOOD`], up to which a turn may be as good about another centre than the middle of what has been seen: of a gear of 20 teeth of which some
+    /// have been seen twice as often as others, half a circle leaves 1.6, of one of 23 teeth its only turn 2.
     pub(crate) const NEARLY_AS_GOOD: f64 = 4.0;
+    /// Such a centre lies no farther from that middle, in RMS radii: where a third of a round outline has never been seen, the middle of the rest is 0.4
+    /// from its centre.
+    pub(crate) const OFF_MIDDLE: f64 = 0.5;
     /// As [`AS_GOOD`], that half of a turn of a symmetry must exceed.
     pub(crate) const HALF_IS_WORSE: f64 = 2.0;
     /// Times of these limits from which on a first look is enough to say that a turn is beyond them: its mean square is known to a fifth.

@@ -58,8 +58,9 @@ fn the_spin_of_a_body_that_swings_is_within_its_deviations_at_its_turning_points
 }
 
 #[test]
-fn rates_of_affine_motion_that_swing_are_not_taken_to_stay_at_every_turning_point() {
-    // From frame to frame they change by what moves a pose by no more than some of its deviations.
+fn the_turn_of_affine_motion_that_swings_is_not_taken_to_stay_at_every_turning_point() {
+    // From frame to frame it changes by what moves a pose by no more than some of its deviations. Where rates that change stayed as readily as the one
+    // of rigid motion, 18 of 427 were off and 365 within two deviations.
     let told = told_by(MotionModel::Affine, |time| 1.5 * (9.0 * time + 0.5).cos());
     assert!(told.off * 50 < told.stated && told.stated * 10 > told.frames * 7, "{told:?}");
     assert!(told.within * 100 > told.stated * 88, "{told:?}");
