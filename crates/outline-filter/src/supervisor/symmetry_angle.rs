@@ -59,8 +59,13 @@ impl SymmetryAngle {
         let mut turns: Vec<f64> = [-1.0, 1.0, -2.0, 2.0].map(|step| present + step * self.0).into();
         if self.0 < TAU {
             let different_turn = self.different_turn();
-            turns.iter_mut().for_each(|turn| *turn = wrapped(*turn));
-            turns.dedup_by(|a, b| (*a - *b).abs() < different_turn);
+            // By two steps back a triangle turns as by one step on.
+            turns = turns.into_iter().map(wrapped).fold(Vec::new(), |mut distinct: Vec<f64>, turn| {
+                if distinct.iter().all(|other| (other - turn).abs() >= different_turn) {
+                    distinct.push(turn);
+                }
+                distinct
+            });
             turns.retain(|turn| (turn - present).abs() > different_turn);
         } else {
             // A whole turn more or less looks the same; where it is surely the larger one it is not named.
@@ -75,10 +80,19 @@ pub(super) fn is_doubtful(other: f64, present: f64) -> bool {
     other.abs() < tuning::SURELY_SMALLER * present.abs()
 }
 
-#[cfg(all(test, feature = "serde"))]
+#[cfg(test)]
 mod tests {
     use super::*;
 
+    #[test]
+    fn turns_that_look_the_same_are_named_once() {
+        for (order, others) in [(2, 1), (3, 2), (4, 3), (5, 4), (20, 4)] {
+            let turns = SymmetryAngle::of_order(order).turns_like(-0.6);
+            assert_eq!(turns.len(), others, "{order}: {turns:?}");
+        }
+    }
+
+    #[cfg(feature = "serde")]
     #[test]
     fn the_angle_0_of_a_saved_state_is_read_as_that_of_no_known_symmetry() {
         assert_eq!(SymmetryAngle::from(0.0).radians(), TAU);
