@@ -144,7 +144,7 @@ fn broken_masks_of_the_robot_are_found_by_their_edges_or_rejected_and_named() {
     let told = stderr(&output);
     let found = told
         .lines()
-        .find_map(|line| line.split_once("by their edges where it was expected, in frames "))
+        .find_map(|line| line.split_once("by their edges where it was expected, in frame(s) "))
         .map(|(_, f)| f);
     let found: Vec<u64> = found.into_iter().flat_map(|frames| frames.split(", ")).flat_map(frames_of).collect();
     println!("found by their edges: {found:?}");
