@@ -99,8 +99,7 @@ impl Course {
     pub(super) fn acceleration_prior(self, pose_variance: &CentredVector, k: usize, seconds: f64) -> CentredVector {
         let (first, span, size) = match self {
             Self::Accelerating { .. } | Self::ChangingGenerator { .. } => {
-                let first = if self.changes_rates() { 0 } else { k - 2 };
-                (first, seconds * self.memory(), tuning::FIRST_ACCELERATION)
+                (self.first_changing(k), seconds * self.memory(), tuning::FIRST_ACCELERATION)
             }
             Self::SteadyChange { .. } => (0, seconds, steady_change::ANY),
             Self::ConstantGenerator | Self::Shaken { .. } | Self::ConstantVelocity { .. } => {
@@ -197,12 +196,19 @@ impl Course {
     pub(super) fn rates(self) -> Rates {
         match self {
             Self::Accelerating { rates: true, .. } | Self::ChangingGenerator { .. } => Rates::ChangeAtRandom,
-            _ => Rates::Stay,
+            Self::Accelerating { rates: false, .. }
+            | Self::ConstantGenerator
+            | Self::Shaken { .. }
+            | Self::ConstantVelocity { .. }
+            | Self::SteadyChange { .. } => Rates::Stay,
         }
     }
 
-    /// Whether rates change, if accelerations do.
-    pub(super) fn changes_rates(self) -> bool {
-        !matches!(self, Self::Accelerating { rates: false, .. })
+    /// The first of k parameters that changes at random, where accelerations do: the velocity of the centroid, and the rates before it if they change.
+    pub(super) fn first_changing(self, k: usize) -> usize {
+        match self.rates() {
+            Rates::ChangeAtRandom => 0,
+            Rates::Stay => k - 2,
+        }
     }
 }

@@ -165,9 +165,9 @@ impl<const N: usize> Hypothesis<N> {
     /// Lets accelerations have changed at random during a step.
     pub(super) fn add_change_of_accelerations(&mut self, step: &Step<'_>) {
         let Some(level) = self.course.level() else { return };
-        let (k, all) = (Self::K, self.course.changes_rates());
+        let k = Self::K;
         let covariance = &mut self.covariance.data.0;
-        for j in if all { 0 } else { k - 2 }..k {
+        for j in self.course.first_changing(k)..k {
             let variance = level * step.pose_variance[j];
             for (row, shares) in step.by_change.iter().enumerate() {
                 for (column, share) in shares.iter().enumerate() {

@@ -23,8 +23,8 @@ struct Pooled<const N: usize> {
 /// Takes every hypothesis to have been one of the others a step ago by chance; the probabilities sum up to one.
 ///
 /// The probability of a change is that the one course is left, times the share of changes that lead to the other. Every mixture has
-/// two parts: the hypothesis itself, and all that have changed together. The state of those is that of all that leave their courses, wherever they lead. They are blended, or kept apart as `arrivals` where that is asked for and
-/// matters.
+/// two parts: the hypothesis itself, and all that have changed together. The state of those is that of all that leave their courses, wherever they
+/// lead. They are blended, or kept apart as `arrivals` where that is asked for and matters.
 pub(super) fn mix<const N: usize>(
     hypotheses: &mut [Hypothesis<N>],
     weights: &mut [f64],
@@ -38,7 +38,7 @@ pub(super) fn mix<const N: usize>(
     let with_all = Pooled::of(hypotheses, weights, model);
     let of_velocity = with_all.of_velocity(hypotheses, weights, model);
     let of_generator = with_all.of_generator(hypotheses, weights, model);
-    // All that leave their courses in this step, and the sum of the shares of changes from one of them to all.
+    // Of those whose rates stay and of those whose rates change: all that leave their courses in this step, and the shares of all changes from one.
     let leaving_of = |of: Rates| {
         let sources = changing(hypotheses, weights).filter(|(hypothesis, _)| hypothesis.course.rates() == of);
         sources.map(|(_, weight)| weight).sum::<f64>()
@@ -123,8 +123,7 @@ fn arriving(course: Course) -> f64 {
     }
 }
 
-/// How often a change from a course whose rates do something leads to another, relative to those that lead to accelerations, in a model of N / 3
-/// parameters.
+/// How often a change leads to a course, as [`arriving`], by what the rates of the course that is left do, in a model of N / 3 parameters.
 fn share_of_changes<const N: usize>(from: Rates, to: Course) -> f64 {
     // Two of the parameters are the velocity. The first rate, the turn of rigid motion, is in `arriving`.
     let further_rates = N as i32 / 3 - 3;
@@ -287,6 +286,11 @@ mod tests {
     use super::*;
     use crate::dynamics::{Dynamics, course::PointOfBody};
 
+    /// At rest, whatever its course.
+    fn of_course<const N: usize>(course: Course) -> Hypothesis<N> {
+        Hypothesis { course, mean: SVector::zeros(), covariance: SMatrix::identity() }
+    }
+
     #[test]
     fn constant_motions_are_left_more_rarely_than_changing_ones() {
         let courses = [
@@ -297,10 +301,9 @@ mod tests {
             Course::Accelerating { level: 1e-1, rates: true },
             Course::Accelerating { level: 1e3, rates: false },
         ];
-        let of = |course| Hypothesis::<9> { course, mean: SVector::zeros(), covariance: SMatrix::identity() };
         // Of each course in turn, all of the probability: what it has lost after a step, and that all others have it.
         let left = courses.map(|course| {
-            let mut hypotheses = courses.map(of);
+            let mut hypotheses = courses.map(of_course::<9>);
             let mut weights = courses.map(|other| f64::from(u8::from(other == course)));
             mix(&mut hypotheses, &mut weights, MotionModel::Rigid, (&CentredVector::repeat(1e-4), 0.1), None);
             assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{weights:?}");
@@ -324,12 +327,7 @@ mod tests {
     /// Weights after a step of all hypotheses of a model, of which one has had all of the probability.
     fn after<const N: usize>(model: MotionModel, leaves: Course) -> Vec<(Course, f64)> {
         let courses = Course::all_of(Dynamics::Auto);
-        let of = |course: &Course| Hypothesis::<N> {
-            course: *course,
-            mean: SVector::zeros(),
-            covariance: SMatrix::identity(),
-        };
-        let mut hypotheses: Vec<_> = courses.iter().map(of).collect();
+        let mut hypotheses: Vec<_> = courses.iter().copied().map(of_course::<N>).collect();
         let mut weights: Vec<_> = courses.iter().map(|course| f64::from(u8::from(*course == leaves))).collect();
         mix(&mut hypotheses, &mut weights, model, (&CentredVector::repeat(1e-4), 0.1), None);
         assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{model:?}: {weights:?}");

@@ -66,7 +66,7 @@ pub(crate) fn symmetry_order(
     (0..found.len()).find(seen).map_or(1, |at| found[at])
 }
 
-/// Those of some orders, with what their turns leave in what no turn does, that explain a frame as well.
+/// The orders whose turns explain a frame as well as none does, by the [mean squares](Turned::mean_squares) of their turns.
 fn as_good(orders: &[usize], mean_squares: &[f64]) -> Vec<usize> {
     orders.iter().zip(mean_squares).filter(|(_, times)| **times <= tuning::AS_GOOD).map(|(order, _)| *order).collect()
 }
