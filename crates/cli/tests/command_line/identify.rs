@@ -104,7 +104,8 @@ fn the_velocity_of_the_middle_is_in_every_format_and_so_is_why_it_or_a_parameter
     assert_eq!((rows[4][9], rows[4][10]), ("true", ""));
     let whole = json(&succeed("identify - --format json", &circle));
     assert_eq!(whole["objects"][0]["parameters"]["omega"]["reason"], "unobservable");
-    assert_eq!(whole["objects"][0]["velocity"]["value"][0].as_f64(), rows[4][6].parse().ok());
+    // Read by one parser: that of JSON rounds the last digit otherwise.
+    assert_eq!(whole["objects"][0]["velocity"]["value"][0], json(rows[4][6]));
     let last = json(succeed("track", &circle).lines().last().expect("a line"));
     assert_eq!(last["velocity"], whole["objects"][0]["velocity"]);
     assert_eq!(last["parameters"], whole["objects"][0]["parameters"]);
