@@ -4,6 +4,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::{
     centred::{Summary, by_rates, carried, centred_generator, of_both, parts},
+    centroid_shift::{logarithm_of, of_logarithm},
     course::{Course, PointOfBody},
     hypothesis::Hypothesis,
     interacting::{InteractingHypotheses, MOST},
@@ -64,7 +65,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         let (mut mean, covariance) = given.about_centroid(&change, k);
         let off = model.motion_between(&(given.pose * self.reference.pose.try_inverse()?), 1.0)?;
         let shift = if self.outline_has_moved { self.common.shift_in(&self.reference.pose) } else { SVector::zeros() };
-        let moved = change * (SVector::<f64, MAX_PARAMETERS>::from(off) + shift);
+        let moved = of_logarithm(model, &(change * (SVector::<f64, MAX_PARAMETERS>::from(off) + shift)))?;
         (0..k).for_each(|j| mean[j] = moved[j]);
         Some((mean, covariance))
     }
@@ -208,7 +209,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         let to = self.reference.about_origin(model)?;
         let large =
             |at: usize| SVector::<f64, MAX_PARAMETERS>::from_fn(|j, _| if j < k { mean[at * k + j] } else { 0.0 });
-        let (error, motion) = (to * large(0), to * large(1));
+        let (error, motion) = (to * logarithm_of(model, &large(0))?, to * large(1));
         let pose = model.flow(&error.as_slice()[..k], 1.0).into_inner() * self.reference.pose;
         let both = StateMatrix::from_fn(|i, j| if i < 2 * k && j < 2 * k { covariance[(i, j)] } else { 0.0 });
         let covariance = carried(&of_both(&to, k), &both, 2 * k);

@@ -7,6 +7,7 @@ use nalgebra::{Point2, SMatrix, SVector};
 use super::{
     arrival::Arrival,
     centred::{CentredDeviations, CentredPose, CentredVector, LARGEST, Summary, carried},
+    centroid_shift::of_logarithm,
     common_error::CommonError,
     correction::{less_known, root_of, solved},
     course::{Course, PointOfBody},
@@ -226,6 +227,10 @@ impl<const N: usize> InteractingHypotheses<N> {
         let pulled = to.transpose() * pulled;
         let pulled = CentredVector::from_fn(|i, _| if i < k { pulled[i] } else { 0.0 });
         let Some(deviation) = solved(&information, &pulled, k) else { return };
+        // Not by the deviation itself, of which what the frame hardly tells may be anything.
+        let linearised_at = self.reference.about_centroid(self.model) * measured.linearised_at;
+        let Some(beyond) = of_logarithm(self.model, &linearised_at).map(|error| error - linearised_at) else { return };
+        let deviation = deviation + beyond;
         let Some(information) = less_known(information, off) else { return };
         for j in 0..k {
             let own = information[(j, j)] / measured.noise_inflation;

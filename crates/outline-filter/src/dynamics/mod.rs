@@ -7,6 +7,7 @@ mod accelerations;
 mod arrival;
 mod beginning;
 mod centred;
+mod centroid_shift;
 mod combination;
 mod common_error;
 mod commuting;

@@ -163,7 +163,7 @@ fn by_velocity(dt: f64) -> SMatrix<f64, 2, MAX_PARAMETERS> {
 }
 
 /// What a motion without its velocity makes in so many seconds.
-fn without_shift(motion: &CentredVector, seconds: f64) -> Matrix3<f64> {
+pub(super) fn without_shift(motion: &CentredVector, seconds: f64) -> Matrix3<f64> {
     let mut rates = *motion;
     rates.fixed_rows_mut::<2>(RATES).fill(0.0);
     MODEL.flow(&in_order_of_model(&rates), seconds).into_inner()
@@ -178,13 +178,13 @@ fn local_of(map: &Matrix3<f64>) -> Option<Matrix3<f64>> {
     local.iter().all(|entry| entry.is_finite()).then_some(local)
 }
 
-fn in_order_of_model(centred: &CentredVector) -> ParameterVector {
+pub(super) fn in_order_of_model(centred: &CentredVector) -> ParameterVector {
     let mut parameters = [0.0; MAX_PARAMETERS];
     centred.iter().zip(centred_order(MODEL)).for_each(|(entry, j)| parameters[*j] = *entry);
     parameters
 }
 
-fn in_centred_order(parameters: &ParameterVector) -> CentredVector {
+pub(super) fn in_centred_order(parameters: &ParameterVector) -> CentredVector {
     CentredVector::from_fn(|i, _| parameters[centred_order(MODEL)[i]])
 }
 

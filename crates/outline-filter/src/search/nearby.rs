@@ -1,5 +1,5 @@
 //! An object looked for near where it was expected.
-use freeform_riccati::{MAX_PARAMETERS, MotionModel, logarithm};
+use freeform_riccati::{MAX_PARAMETERS, MotionModel};
 use nalgebra::{Matrix3, Point2, SVector};
 
 use super::refinement::{RegisteredPose, Steps, few_of, middles, refined};
@@ -20,10 +20,7 @@ pub(crate) fn displacement_nearby(track: &Track, frame: &Frame) -> Option<SVecto
     let [from_expected, from_middle] = starts.map(|start| refined_nearby(track, &few, &start));
     let is_better = |middle: &RegisteredPose| from_expected.is_none_or(|found| TIE * middle.score < found.score);
     let found = from_middle.filter(is_better).or(from_expected)?;
-    let change = logarithm(&(found.pose * predicted.try_inverse()?))?;
-    let mut displacement = track.model().parameters_of(&change);
-    track.null_directions().iter().for_each(|null| null.subtract_from(&mut displacement));
-    Some(SVector::from(displacement))
+    track.error_to(&found.pose)
 }
 
 /// The pose that a search from another leads to; `None` where that does not explain the points.

@@ -5,18 +5,18 @@ use nalgebra::SVector;
 #[cfg(feature = "serde")]
 use super::settings::FilterSettings;
 use crate::{
-    belief::{StateMatrix, StateVector},
+    belief::StateMatrix,
     dynamics::DynamicsFilter,
-    prediction::ByKind,
+    prediction::{ByKind, PoseMatrix},
     track::{Outcome, Track},
-    tuning::{motion_change as tuning, statement::REACH},
-    update::PoseInnovation,
+    tuning::{dynamics::OUTSIDE_INTERVAL, motion_change as tuning, statement::REACH},
+    update::{PoseInnovation, PoseMeasurement},
 };
 #[cfg(feature = "serde")]
 use freeform_estimate::StateFormat;
 
 /// One entry for each parameter of a pose.
-type PoseVector = SVector<f64, MAX_PARAMETERS>;
+pub(super) type PoseVector = SVector<f64, MAX_PARAMETERS>;
 
 const KEPT: f64 = 1.0 - 1.0 / tuning::MEMORY;
 
@@ -39,11 +39,58 @@ pub(super) struct MotionHistory {
     pub(super) change: MotionChange,
     /// None before the third frame, and where dynamics are not told.
     pub(super) dynamics: Option<DynamicsFilter>,
-    /// A frame that shows the object elsewhere than it was expected, and was not taken, is wrong, or the motion has changed: by so much since
-    /// a frame was taken last, normalised, of a turn that is small meanwhile.
-    contradiction: Option<PoseVector>,
+    /// A frame that shows the object elsewhere than it was expected, and was not taken.
+    contradiction: Option<Contradiction>,
     /// Time since a frame was taken last.
     pub(super) since_taken: f64,
+}
+
+/// A frame that shows the object elsewhere than it was expected, and was not taken: it is wrong, or the motion has changed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Contradiction {
+    /// Error of the expected pose, normalised, of a turn that is small, by the time since a frame was taken last.
+    change: PoseVector,
+    /// Of that error, by the square of that time.
+    covariance: PoseMatrix,
+    shown: Shown,
+}
+
+/// How far an object lies from where it was expected, as a frame shows it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Apart {
+    /// Error of the expected pose, like those of the belief.
+    pub(super) error: PoseVector,
+    pub(super) covariance: PoseMatrix,
+    pub(super) shown: Shown,
+}
+
+impl Apart {
+    /// As a frame tells it that shows the outline.
+    pub(super) fn measured(pose: &PoseMeasurement) -> Option<Self> {
+        Some(Self { error: pose.error()?, covariance: pose.covariance()?, shown: Shown::Whole })
+    }
+}
+
+/// How much of an object a frame shows elsewhere than it was expected.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) enum Shown {
+    /// All of it: its motion has changed, unless it is something else.
+    Whole,
+    /// A part: it may as well be hidden.
+    InPart,
+}
+
+impl Shown {
+    /// How many times faster than on the mean since a frame was taken last the object may move now. Its motion may have changed at any time meanwhile:
+    /// in the last twentieth of it once in twenty times.
+    fn times_faster(self) -> f64 {
+        match self {
+            Self::Whole => 1.0 / OUTSIDE_INTERVAL,
+            Self::InPart => 1.0,
+        }
+    }
 }
 
 impl MotionHistory {
@@ -83,7 +130,7 @@ impl MotionHistory {
                     self.dynamics = None;
                 }
             }
-        } else if let Some(apart) = outcome.pose.and_then(|measured| measured.error()) {
+        } else if let Some(apart) = outcome.pose.as_ref().and_then(Apart::measured) {
             self.record_apart(&apart);
         }
         self.end_step();
@@ -95,19 +142,22 @@ impl MotionHistory {
     }
 
     /// Records how far from where it was expected a frame shows the object that was not taken, and has been recorded.
-    pub(super) fn record_apart(&mut self, apart: &PoseVector) {
-        self.contradiction = Some(apart / self.since_taken);
+    pub(super) fn record_apart(&mut self, apart: &Apart) {
+        let Apart { error, covariance, shown } = *apart;
+        let since = self.since_taken;
+        self.contradiction =
+            Some(Contradiction { change: error / since, covariance: covariance / (since * since), shown });
     }
 
     /// A covariance of pose and motion, of k parameters, by which an interval of 95 % reaches what a frame shows that has not been taken.
     pub(super) fn contradicted(&self, k: usize) -> Option<StateMatrix> {
-        let change = self.contradiction?;
-        let apart = StateVector::from_fn(|i, _| match i {
-            i if i < k => change[i] * self.since_taken,
-            i if i < 2 * k => change[i - k],
-            _ => 0.0,
-        });
-        Some(REACH * apart * apart.transpose())
+        let Contradiction { change, covariance, shown } = self.contradiction?;
+        let squares = REACH * change * change.transpose() + covariance;
+        // Of the pose, and of the motion that has led to it.
+        let times = [self.since_taken, shown.times_faster()];
+        Some(StateMatrix::from_fn(|i, j| {
+            if i < 2 * k && j < 2 * k { times[i / k] * times[j / k] * squares[(i % k, j % k)] } else { 0.0 }
+        }))
     }
 
     /// Of another pose: without what was tied to this one.
@@ -220,7 +270,10 @@ impl MotionHistory {
     /// Whether it is that of a filter with such settings, and all its numbers can be worked with.
     pub(super) fn is_valid(&self, settings: &FilterSettings) -> bool {
         let of_settings = |dynamics: &DynamicsFilter| dynamics.is_valid(settings.model, settings.followed_dynamics());
-        let is_change = |change: &PoseVector| change.iter().all(|entry| entry.abs() < StateFormat::LARGEST_NUMBER);
+        let are_in_bounds = |numbers: &[f64]| numbers.iter().all(|entry| entry.abs() < StateFormat::LARGEST_NUMBER);
+        let is_change = |contradiction: &Contradiction| {
+            are_in_bounds(contradiction.change.as_slice()) && are_in_bounds(contradiction.covariance.as_slice())
+        };
         self.change.is_finite()
             && self.dynamics.as_ref().is_none_or(of_settings)
             && self.contradiction.as_ref().is_none_or(is_change)

@@ -1,14 +1,14 @@
 //! A track moved on to a frame, and the changes of its motion found.
 use std::f64::consts::TAU;
 
-use freeform_riccati::MAX_PARAMETERS;
-use nalgebra::SVector;
-
-use super::{motion_change::MotionHistory, settings::FilterSettings};
+use super::{
+    motion_change::{Apart, MotionHistory, PoseVector, Shown},
+    settings::FilterSettings,
+};
 use crate::{
     dynamics::{DynamicsFilter, Purpose},
     measurement::Frame,
-    prediction::TimeOfChange,
+    prediction::{PoseMatrix, TimeOfChange},
     search::displacement_nearby,
     track::{Comparison, Outcome, Track},
     tuning::{
@@ -164,9 +164,6 @@ pub(super) fn advance_again(
     Some(outcome)
 }
 
-/// How far an object lies from where it was expected: an error of the pose like those of the belief.
-type Apart = SVector<f64, MAX_PARAMETERS>;
-
 /// What becomes of a frame, after the changes of the motion that it shows; where it is not taken, and the outline is not where it was expected, how far
 /// from there a search has found it.
 fn outcome_with_changes(
@@ -175,7 +172,7 @@ fn outcome_with_changes(
     history: &mut MotionHistory,
     (seconds, gates): (f64, &Gates),
     (turns, comparison): (Turns, Comparison),
-) -> (Outcome, Option<Apart>) {
+) -> (Outcome, Option<PoseVector>) {
     let mut outcome = track.update(frame, &gates.as_before, comparison);
     let MotionHistory { change, dynamics, since_taken, .. } = history;
     let since_taken = *since_taken + seconds;
@@ -225,20 +222,27 @@ fn found_elsewhere(
     outcome: Outcome,
     settings: &FilterSettings,
     (track, frame): (&Track, &mut Frame),
-    (apart, since_taken): (Apart, f64),
+    (error, since_taken): (PoseVector, f64),
 ) -> (Outcome, Option<Apart>) {
-    // Points of an object that has been at rest scatter more once it moves.
-    let whole = track.gate_of_all(gate(settings, track)).without_noise();
-    let mut displaced = track.clone();
-    let is_elsewhere = whole.verdict(&outcome.measurement).is_err()
-        && displaced.displace(&apart, since_taken)
-        && displaced.update(frame, &whole, Comparison::NotAsked).is_accepted();
-    if is_elsewhere {
-        let distance = track.in_image_lengths(displaced.displacement_from(track.body_pose()));
-        return (Outcome { verdict: Err(Rejection::Elsewhere { distance }), ..outcome }, Some(apart));
-    }
     let is_noisy = matches!(outcome.verdict, Err(Rejection::NoiseTooLarge { .. }));
-    (outcome, Some(apart).filter(|_| !is_noisy))
+    let whole = track.gate_of_all(gate(settings, track));
+    // Points of an object that has been at rest scatter more once it moves. Where that is all that speaks against a frame, they must scatter less there.
+    let whole = if is_noisy { whole } else { whole.without_noise() };
+    let is_here = whole.verdict(&outcome.measurement).is_ok();
+    let mut displaced = track.clone();
+    if !is_here && displaced.displace(&error, since_taken) {
+        let found = displaced.update(frame, &whole, Comparison::NotAsked);
+        if found.is_accepted() {
+            let distance = track.in_image_lengths(displaced.displacement_from(track.body_pose()));
+            // As the frame by itself shows it, whatever was expected.
+            let measured = found.pose.as_ref().and_then(Apart::measured);
+            let apart = measured.map(|measured| Apart { error: measured.error + error, ..measured });
+            let outcome = Outcome { verdict: Err(Rejection::Elsewhere { distance }), ..outcome };
+            return (outcome, apart);
+        }
+    }
+    let in_part = Apart { error, covariance: PoseMatrix::zeros(), shown: Shown::InPart };
+    (outcome, (!is_noisy).then_some(in_part))
 }
 
 /// Whether a frame may show the outline elsewhere than it was expected: the sides of a bar that has moved along itself may still lie on it, and its
@@ -273,7 +277,7 @@ pub(super) fn after_sudden_change(
 fn outcome_nearby(
     (track, frame): (&mut Track, &mut Frame),
     dynamics: Option<&mut DynamicsFilter>,
-    (turns, (apart, seconds)): (Turns, (Apart, f64)),
+    (turns, (apart, seconds)): (Turns, (PoseVector, f64)),
     (gate, comparison): (&Gate, Comparison),
 ) -> Option<Outcome> {
     let mut displaced = track.clone();

@@ -1,5 +1,5 @@
 //! A track moved to where a frame shows its object, away from where it was expected.
-use freeform_riccati::{MAX_PARAMETERS, map_point};
+use freeform_riccati::{MAX_PARAMETERS, logarithm, map_point};
 use nalgebra::{Matrix3, SVector};
 
 use super::Track;
@@ -32,6 +32,14 @@ impl Track {
         self.belief.motion.iter_mut().zip(displacement).for_each(|(rate, by)| *rate += by / seconds);
         self.add_change([mean_square / (seconds * seconds * step); 2], TimeOfChange::Any);
         true
+    }
+
+    /// The error of the pose, on the left, if another one is right; none along what the outline does not show.
+    pub(crate) fn error_to(&self, pose: &Matrix3<f64>) -> Option<SVector<f64, MAX_PARAMETERS>> {
+        let change = logarithm(&(pose * self.body_pose().try_inverse()?))?;
+        let mut error = self.model().parameters_of(&change);
+        self.null_directions().iter().for_each(|null| null.subtract_from(&mut error));
+        Some(SVector::from(error))
     }
 
     /// A normalised length in image lengths.

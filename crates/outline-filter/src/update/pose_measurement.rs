@@ -1,11 +1,12 @@
 //! What a frame tells of the pose by itself, whatever motion was predicted.
 use freeform_riccati::MAX_PARAMETERS;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 use super::solve::Proposal;
 use crate::{
     belief::{Belief, OffsetInformation, sum_of_outer_products},
     measurement::Frame,
+    prediction::PoseMatrix,
     tuning::dynamics::LARGEST_VARIANCE,
     vectors::vectorised,
 };
@@ -16,9 +17,11 @@ use crate::{
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PoseMeasurement {
     /// Information W on the pose, the offsets eliminated.
-    pub(crate) information: SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>,
+    pub(crate) information: PoseMatrix,
     /// W times the error that the frame asks for.
     pub(crate) pulled: SVector<f64, MAX_PARAMETERS>,
+    /// The error in which the frame was linearised last, by all that is known.
+    pub(crate) linearised_at: SVector<f64, MAX_PARAMETERS>,
     /// Factor, at least 1, of the variance of the pose for hypotheses of motions that change at random, (64a) in docs/motion-filter.md.
     pub(crate) noise_inflation: f64,
 }
@@ -49,23 +52,30 @@ impl PoseMeasurement {
             information[i].iter_mut().zip(&taken.information[i]).for_each(|(entry, taken)| *entry -= taken);
         }
         Self {
-            information: SMatrix::from_fn(|i, j| {
+            information: PoseMatrix::from_fn(|i, j| {
                 if i < K && j < K { 0.5 * (information[i][j] + information[j][i]) } else { 0.0 }
             }),
             pulled: SVector::from_fn(|i, _| if i < K { pulled[i] } else { 0.0 }),
+            linearised_at: SVector::from_fn(|i, _| if i < K { proposal.state[i] } else { 0.0 }),
             noise_inflation: 1.0,
         }
     }
 
     /// The error of the predicted pose that the frame asks for, divided by a variance: next to none along what it hardly shows.
     pub(crate) fn error(&self) -> Option<SVector<f64, MAX_PARAMETERS>> {
-        let before = SMatrix::from_diagonal_element(1.0 / LARGEST_VARIANCE);
-        (self.information + before).lu().solve(&self.pulled)
+        Some(self.covariance()? * self.pulled)
+    }
+
+    /// Covariance of that error.
+    pub(crate) fn covariance(&self) -> Option<PoseMatrix> {
+        (self.information + PoseMatrix::from_diagonal_element(1.0 / LARGEST_VARIANCE))
+            .cholesky()
+            .map(|root| root.inverse())
     }
 
     /// Over the effective variance of the noise, with the factor of (64a).
     pub(crate) fn over(&self, variance: f64, noise_inflation: f64) -> Self {
-        Self { information: self.information / variance, pulled: self.pulled / variance, noise_inflation }
+        Self { information: self.information / variance, pulled: self.pulled / variance, noise_inflation, ..*self }
     }
 }
 

