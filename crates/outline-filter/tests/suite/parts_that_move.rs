@@ -27,12 +27,10 @@ fn an_arm_that_swings_on_a_stand_is_told_to_be_a_part_that_does_not_move_with_th
                 points_on(&stand_with_arm(1.2 * (9.0 * time).sin()), 200, (0.0, Vector2::zeros()), &mut random);
             run.step(time, &Outline::closed(points).expect("an outline")).expect("increasing times");
         }
-        // The stand rests.
-        let omega = run.estimate().and_then(|estimate| estimate.parameters().next()).expect("a model with parameters");
-        assert!(
-            omega.value.zip(omega.standard_deviation).is_none_or(|(value, std)| value.abs() < 4.0 * std),
-            "{omega:?}"
-        );
+        // The stand rests. An arm that is taken for the object may have no motion that is known.
+        let omega = run.estimate().and_then(|estimate| estimate.parameters().next());
+        let stated = omega.and_then(|omega| omega.value.zip(omega.standard_deviation));
+        assert!(stated.is_none_or(|(value, std)| value.abs() < 4.0 * std), "{stated:?}");
         let share = run.disagreeing_part();
         assert!(share.is_none_or(|share| (0.08..0.4).contains(&share)), "seed {seed}: {share:?}");
         told += u32::from(share.is_some());
