@@ -3,7 +3,7 @@
 //! With the root L of the information of the frame, `W = L L'`, and the covariance P of the predicted pose, the weight of the innovation is
 //! `(W^-1 + P)^-1 = (I + W P)^-1 W = T T'`, where `T = L C^-T` and `C C' = I + L' P L`. That is never singular, also where W is, and has the
 //! determinant of `I + W P`. The covariance loses `H H'`, where H are its columns of the pose times T: it stays symmetric bit by bit.
-use nalgebra::{Const, DimMin};
+use nalgebra::{Const, DimMin, Matrix2};
 
 use super::{
     centred::{CentredDeviations, CentredMatrix, CentredVector, LARGEST},
@@ -45,6 +45,16 @@ pub(super) fn less_known(information: CentredMatrix, off: &CentredDeviations) ->
     let covariance = CentredMatrix::from_diagonal(&CentredVector::from_fn(|i, _| off[i] * off[i]));
     let less = (CentredMatrix::identity() + information * covariance).lu().solve(&information)?;
     Some(0.5 * (less + less.transpose()))
+}
+
+/// Information on the rates of a pose of k parameters alone, wherever its centroid is.
+pub(super) fn of_rates_alone(information: &CentredMatrix, k: usize) -> Option<CentredMatrix> {
+    let (rates, place) = (k - 2, information.fixed_view::<2, 2>(k - 2, k - 2));
+    // Along what the frame says nothing of, it says nothing of the rates beside either.
+    let regular = place + Matrix2::from_diagonal_element(tuning::SINGULAR * place.trace() + f64::MIN_POSITIVE);
+    let across = information.fixed_view::<LARGEST, 2>(0, k - 2);
+    let taken = across * regular.try_inverse()? * across.transpose();
+    Some(CentredMatrix::from_fn(|i, j| if i < rates && j < rates { information[(i, j)] - taken[(i, j)] } else { 0.0 }))
 }
 
 /// Solution of `W x = b` for a matrix that may be singular: none along what it says nothing of.

@@ -1,12 +1,12 @@
 //! Hypotheses that follow poses measured with white noise.
 use freeform_riccati::{MAX_PARAMETERS, MotionModel};
-use nalgebra::{Matrix3, Point2, Rotation2, SMatrix, SVector, Vector2};
+use nalgebra::{Matrix3, Point2, Rotation2, SVector, Vector2};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
 use super::{CentredPose, Dynamics, DynamicsFilter, Purpose, Summary};
-use crate::{belief::StateMatrix, dynamics::centred::of_both, update::PoseMeasurement};
+use crate::{belief::StateMatrix, dynamics::centred::of_both, prediction::PoseMatrix, update::PoseMeasurement};
 
 const MODEL: MotionModel = MotionModel::Rigid;
 const PARAMETERS: usize = 3;
@@ -27,13 +27,15 @@ struct Course {
     jump: Vector2<f64>,
     /// Errors of poses from the third frame on, in the deviations that are said of them.
     errors: f64,
+    /// Correlation of what a frame tells of the turn and of the place towards the point that runs straight, as of an outline with one long side.
+    coupling: f64,
 }
 
 impl Course {
     /// So far aside of its centroid a point runs straight for good, seen as well as is said.
     fn straight(spin: f64, aside: f64) -> Self {
         let (velocity, aside) = (Vector2::new(1.2, 0.0), Vector2::new(aside, 0.0));
-        Self { spin, velocity, aside, jump: Vector2::zeros(), errors: 1.0 }
+        Self { spin, velocity, aside, jump: Vector2::zeros(), errors: 1.0, coupling: 0.0 }
     }
 
     /// Of the slope of a line through n poses, which has sqrt(12 / n^3) times the noise in a step; here the point is not known either.
@@ -59,6 +61,16 @@ impl Course {
         self.velocity + self.spin * Vector2::new(-lever.y, lever.x)
     }
 
+    /// What a frame tells of the pose about the centroid, in units of the noise.
+    fn information(&self, frame: usize) -> PoseMatrix {
+        let mut information = PoseMatrix::from_fn(|i, j| if i == j && i < PARAMETERS { 1.0 } else { 0.0 });
+        for (i, along) in self.lever(frame).iter().enumerate() {
+            let coupled = self.coupling * along / self.aside.norm().max(f64::MIN_POSITIVE);
+            (information[(0, i + 1)], information[(i + 1, 0)]) = (coupled, coupled);
+        }
+        information
+    }
+
     fn jumps(&self) -> bool {
         self.jump != Vector2::zeros()
     }
@@ -71,10 +83,11 @@ struct Run<'a> {
     random: ChaCha8Rng,
 }
 
-/// Errors of the velocity of the centroid in their deviations, and the deviations.
+/// Errors of the velocity of the centroid in their deviations, and the deviations; the same of the spin.
 struct Velocity {
     standardised: Vector2<f64>,
     deviations: Vector2<f64>,
+    spin: [f64; 2],
 }
 
 fn centred(pose: Matrix3<f64>) -> CentredPose {
@@ -129,8 +142,12 @@ impl<'a> Run<'a> {
         assert!(filter.set_reference(&reference));
         let about_centroid = centred(reference).about_centroid(MODEL);
         let off = PoseError::from(MODEL.motion_between(&(truth * reference.try_inverse()?), 1.0)?);
-        let seen = about_centroid * off + course.errors * noise(random);
-        let by_centroid = SMatrix::from_fn(|i, j| if i == j && i < PARAMETERS { 1.0 / (NOISE * NOISE) } else { 0.0 });
+        let information = course.information(frame);
+        let root =
+            (information + PoseMatrix::from_fn(|i, j| f64::from(u8::from(i == j && i >= PARAMETERS)))).cholesky()?;
+        let errors = root.l().transpose().solve_upper_triangular(&noise(random))?;
+        let seen = about_centroid * off + course.errors * errors;
+        let by_centroid = information / (NOISE * NOISE);
         let measured = PoseMeasurement {
             information: about_centroid.transpose() * by_centroid * about_centroid,
             pulled: about_centroid.transpose() * (by_centroid * seen),
@@ -141,12 +158,16 @@ impl<'a> Run<'a> {
         let stated = filter.combined(None, Purpose::Statement)?;
         filter.end_step();
         let change = centred(truth).about_centroid(MODEL);
-        let error = (change * PoseError::from(stated.motion)).fixed_rows::<2>(1) - course.velocity(frame);
+        let motion = change * PoseError::from(stated.motion);
+        let error = motion.fixed_rows::<2>(1) - course.velocity(frame);
         let both = of_both(&change, PARAMETERS);
         let covariance = both * stated.covariance * both.transpose();
         let of_velocity = covariance.fixed_view::<2, 2>(PARAMETERS + 1, PARAMETERS + 1).into_owned();
         let deviations = of_velocity.diagonal().map(f64::sqrt);
-        Some(Velocity { standardised: error.component_div(&deviations), deviations })
+        let of_spin = covariance[(PARAMETERS, PARAMETERS)].sqrt();
+        // Omega is positive clockwise.
+        let spin = [(motion[0] + course.spin) / of_spin, of_spin];
+        Some(Velocity { standardised: error.component_div(&deviations), deviations, spin })
     }
 }
 
@@ -217,4 +238,19 @@ fn the_velocity_of_a_body_whose_point_aside_runs_straight_is_known_also_where_po
     let [square, deviation] = of_many_runs(&course, 60)[59];
     let of_line = course.deviation_of_line(60);
     assert!(square < LARGEST_MEAN_SQUARE && deviation < 20.0 * of_line, "{square} {deviation} {of_line}");
+}
+
+/// The acceleration of the centroid fits no steady change, and what it leaves was laid to the turn: the deviation of the spin was 300 times that of a line.
+#[test]
+fn the_spin_of_a_body_whose_point_aside_runs_straight_is_known_as_well_as_its_turns_tell_it() {
+    let course = Course { coupling: 0.7, ..Course::straight(3.8, 0.1) };
+    let (mut squares, mut largest) = (0.0, 0.0_f64);
+    for seed in 0..40 {
+        let mut run = Run::begin(&course, seed).expect("a step is known");
+        let last = (2..60).filter_map(|frame| run.follow(frame)).last().expect("a motion that is stated");
+        squares += last.spin[0].powi(2) / 40.0;
+        largest = largest.max(last.spin[1]);
+    }
+    let of_line = course.deviation_of_line(60);
+    assert!(squares < LARGEST_MEAN_SQUARE && largest < 10.0 * of_line, "{squares} {largest} {of_line}");
 }

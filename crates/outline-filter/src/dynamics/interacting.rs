@@ -9,7 +9,7 @@ use super::{
     centred::{CentredDeviations, CentredPose, CentredVector, LARGEST, Summary, carried},
     centroid_shift::of_logarithm,
     common_error::CommonError,
-    correction::{less_known, root_of, solved},
+    correction::{less_known, of_rates_alone, root_of, solved},
     course::{Course, PointOfBody},
     hypothesis::{CentredMeasurement, Hypothesis},
     innovations::InnovationSeries,
@@ -251,10 +251,11 @@ impl<const N: usize> InteractingHypotheses<N> {
             let (logarithm, score) = arrival.update(&measurement, (logarithms[number], standardised[number]));
             (logarithms[number], standardised[number]) = (logarithm, score);
         }
-        if let Some(change) = &mut self.steady_change {
+        if let Some((change, of_rates)) = self.steady_change.as_mut().zip(of_rates_alone(&information, k)) {
             let is_velocity = |h: &Hypothesis<N>| h.course == Course::straight(PointOfBody::NearCentroid);
             let velocity = self.hypotheses.iter().position(is_velocity);
-            change.update(&measurement, velocity.map(|number| logarithms[number]));
+            let of_rates = CentredMeasurement { root: root_of(&of_rates, k), ..measurement };
+            change.update([&measurement, &of_rates], velocity.map(|number| logarithms[number]));
         }
         let largest = logarithms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         if !largest.is_finite() {

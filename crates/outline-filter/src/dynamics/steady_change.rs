@@ -11,13 +11,13 @@ use super::{
 };
 use crate::tuning::steady_change as tuning;
 
-/// Motions that change at a steady rate since hypotheses began: a constant generator, and one whose centroid has run straight. Next to nothing
-/// is taken to be known of the rates of change beforehand, so that what the frames say of them can be weighed for each size that they may
-/// have. They have no part in where the object is expected.
+/// Motions that change at a steady rate since hypotheses began: a constant generator, one whose centroid has run straight, and one whose centroid goes
+/// any way. Next to nothing is taken to be known of the rates of change beforehand, so that what the frames say of them can be weighed for each size
+/// that they may have. They have no part in where the object is expected.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct SteadyChange<const N: usize> {
-    /// Whose velocity turns with the object, and whose does not.
+    /// Of a generator, of a straight way and of any.
     hypotheses: Vec<Hypothesis<N>>,
     /// Deviations of a pose over the square of a step: the unit of rates of change.
     units: CentredVector,
@@ -26,6 +26,12 @@ pub(super) struct SteadyChange<const N: usize> {
     over_velocity: f64,
     frames: usize,
 }
+
+/// The hypotheses by their numbers. Any way is a straight one of which frames tell nothing.
+const GENERATOR: usize = 0;
+const STRAIGHT: usize = 1;
+const ANY_WAY: usize = 2;
+const TURNS: [bool; 3] = [true, false, false];
 
 /// What a motion that may change adds to what is known of a constant one.
 #[derive(Debug, Clone, Copy)]
@@ -45,7 +51,7 @@ impl<const N: usize> SteadyChange<N> {
         (mean, covariance): (SVector<f64, N>, SMatrix<f64, N, N>),
         (pose_variance, seconds): (&CentredVector, f64),
     ) -> Self {
-        let hypotheses = [true, false].into_iter().map(|turns| {
+        let hypotheses = TURNS.into_iter().map(|turns| {
             Hypothesis::begin((Course::SteadyChange { turns }, model), (mean, covariance), (pose_variance, seconds))
         });
         let units = pose_variance.map(f64::sqrt) / (seconds * seconds);
@@ -62,12 +68,13 @@ impl<const N: usize> SteadyChange<N> {
         if self.is_over() { &mut [] } else { &mut self.hypotheses }
     }
 
-    /// Takes a frame; `velocity` is the logarithm of its likelihood where the velocity of a point near the centroid is constant.
-    pub(super) fn update(&mut self, measurement: &CentredMeasurement, velocity: Option<f64>) {
+    /// Takes a frame, and what it tells of the rates alone; `velocity` is the logarithm of its likelihood where the velocity of a point near the centroid
+    /// is constant.
+    pub(super) fn update(&mut self, [whole, rates]: [&CentredMeasurement; 2], velocity: Option<f64>) {
         let mut gained = 0.0;
-        for hypothesis in self.hypotheses() {
-            let innovation = hypothesis.update(measurement);
-            if let Some((changes, velocity)) = innovation.zip(velocity).filter(|_| !hypothesis.course.turns()) {
+        for (number, hypothesis) in self.hypotheses().iter_mut().enumerate() {
+            let innovation = hypothesis.update(if number == ANY_WAY { rates } else { whole });
+            if let Some((changes, velocity)) = innovation.zip(velocity).filter(|_| number == STRAIGHT) {
                 gained = changes.log_likelihood - velocity;
             }
         }
@@ -80,7 +87,7 @@ impl<const N: usize> SteadyChange<N> {
     pub(super) fn is_valid(&self) -> bool {
         let is_finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
         let courses = self.hypotheses.iter().map(|hypothesis| hypothesis.course);
-        courses.eq([true, false].map(|turns| Course::SteadyChange { turns }))
+        courses.eq(TURNS.map(|turns| Course::SteadyChange { turns }))
             && self.hypotheses.iter().all(|h| is_finite(h.mean.as_slice()) && is_finite(h.covariance.as_slice()))
             && self.units.iter().all(|unit| unit.is_finite() && *unit > 0.0)
             && self.over_velocity.is_finite()
@@ -100,8 +107,29 @@ impl<const N: usize> SteadyChange<N> {
         if self.is_over() {
             return None;
         }
+        let k = Hypothesis::<N>::K;
+        let told = self.told(if turns { GENERATOR } else { STRAIGHT }, place)?;
+        // Of a body that runs straight the rates alone, whatever way its centroid goes: a point beside that may run straight.
+        let of_rates = if turns { told } else { self.told(ANY_WAY, place)? };
+        let against = if turns { 0.0 } else { self.against(&told.changes(|information| information), k)? };
+        let widen = |information: CentredMatrix| {
+            CentredMatrix::from_fn(|i, j| information[(i, j)] / (widened_later[i] * widened_later[j] * shaking))
+        };
+        let weighed = told.changes(widen).weighed(k, against / shaking, &of_rates.changes(widen))?;
+        let Weighed { probability, of_rates: by_rates, others } = weighed;
+        // What is stated is widened by the factors later on, and these are sizes as they are.
+        let carried = |moments: [CentredMatrix; 2]| {
+            let sum = of_rates.carried(&moments[0]) + told.carried(&moments[1]);
+            SMatrix::<f64, N, N>::from_fn(|i, j| sum[(i, j)] / (widened_later[i % k] * widened_later[j % k]))
+        };
+        let (apart, beside) = (carried([by_rates.apart, others.apart]), carried([by_rates.beside, others.beside]));
+        Some(PossibleChange { probability, apart, beside })
+    }
+
+    /// What a hypothesis of a number tells of its rates of change.
+    fn told(&self, number: usize, place: &SMatrix<f64, N, N>) -> Option<Told<N>> {
         let (k, unit) = (Hypothesis::<N>::K, &self.units);
-        let Hypothesis { mean, covariance, .. } = &self.hypotheses[usize::from(!turns)];
+        let Hypothesis { mean, covariance, .. } = &self.hypotheses[number];
         let own = |i: usize, j: usize| f64::from(u8::from(i == j));
         let known = CentredMatrix::from_fn(|i, j| match i < k && j < k {
             true => covariance[(2 * k + i, 2 * k + j)] / (unit[i] * unit[j]) + tuning::SINGULAR * own(i, j),
@@ -109,22 +137,11 @@ impl<const N: usize> SteadyChange<N> {
         });
         let information = known.cholesky()?.inverse();
         let found = CentredVector::from_fn(|i, _| if i < k { mean[2 * k + i] / unit[i] } else { 0.0 });
-        let widened =
-            CentredMatrix::from_fn(|i, j| information[(i, j)] / (widened_later[i] * widened_later[j] * shaking));
-        let against = if turns { 0.0 } else { self.against(&Changes { information, score: information * found }, k)? };
-        let changes = Changes { information: widened, score: widened * found }.weighed(k, against / shaking)?;
         let of_state = SMatrix::<f64, N, LARGEST>::from_fn(|i, j| match i < 2 * k && j < k {
             true => covariance[(i, 2 * k + j)] / unit[j],
             false => 0.0,
         });
-        let sensitivity = place * of_state * information;
-        // What is stated is widened by the factors later on, and these are sizes as they are.
-        let carried = |moments: CentredMatrix| {
-            let carried = sensitivity * moments * sensitivity.transpose();
-            SMatrix::<f64, N, N>::from_fn(|i, j| carried[(i, j)] / (widened_later[i % k] * widened_later[j % k]))
-        };
-        let Weighed { probability, apart, beside } = changes;
-        Some(PossibleChange { probability, apart: carried(apart), beside: carried(beside) })
+        Some(Told { information, found, sensitivity: place * of_state * information })
     }
 
     /// `ln(L_0 / L_d)` of (82a), at most 0: the likelihood of the frames if the centroid runs straight, over that if a point near it does. The
@@ -135,17 +152,53 @@ impl<const N: usize> SteadyChange<N> {
     }
 }
 
+/// What a hypothesis says of its rates of change, in their units, and how far they move pose and motion.
+#[derive(Debug, Clone, Copy)]
+struct Told<const N: usize> {
+    information: CentredMatrix,
+    found: CentredVector,
+    sensitivity: SMatrix<f64, N, LARGEST>,
+}
+
+impl<const N: usize> Told<N> {
+    fn changes(&self, widen: impl Fn(CentredMatrix) -> CentredMatrix) -> Changes {
+        let information = widen(self.information);
+        Changes { information, score: information * self.found }
+    }
+
+    /// Second moments of the rates of change as those of pose and motion.
+    fn carried(&self, moments: &CentredMatrix) -> SMatrix<f64, N, N> {
+        self.sensitivity * moments * self.sensitivity.transpose()
+    }
+}
+
 /// What frames say of rates of change, in their units.
 struct Changes {
     information: CentredMatrix,
     score: CentredVector,
 }
 
-/// Rates of change weighed against none: the probability that they matter, and their second moments times that of each.
+/// Rates of change weighed against none: the probability that they matter, and the moments of those that the rates have alone and of the others.
 struct Weighed {
     probability: f64,
+    of_rates: Moments,
+    others: Moments,
+}
+
+/// Second moments of rates of change, each times its probability: of what is found, and of what may be there beside that.
+struct Moments {
     apart: CentredMatrix,
     beside: CentredMatrix,
+}
+
+impl Moments {
+    fn none() -> Self {
+        Self { apart: CentredMatrix::zeros(), beside: CentredMatrix::zeros() }
+    }
+
+    fn divided(self, by: f64) -> Self {
+        Self { apart: self.apart / by, beside: self.beside / by }
+    }
 }
 
 /// Rates of change of some sizes beforehand, in their units.
@@ -174,40 +227,29 @@ impl Changes {
         Some(OfSizes { logarithm, found: found.component_mul(sizes), factor })
     }
 
-    /// Changes of rates of a size beside whatever the velocity does: what explains that says nothing of the rates. `any` are those of the velocity alone.
-    fn beside_velocity(&self, sizes: &CentredVector, velocity: &Range<usize>, any: &OfSizes) -> Option<OfSizes> {
-        let mut beside = self.of_sizes(&(sizes + sized(velocity, tuning::ANY)))?;
-        beside.logarithm -= any.logarithm;
-        velocity.clone().for_each(|i| beside.found[i] = 0.0);
-        Some(beside)
-    }
-
-    /// Weighs changes of k parameters, with a logarithm `against` those of the velocity.
-    fn weighed(&self, k: usize, against: f64) -> Option<Weighed> {
+    /// Weighs changes of k parameters, with a logarithm `against` those of the velocity; those of the rates alone by what is said of them.
+    fn weighed(&self, k: usize, against: f64, of_rates: &Self) -> Option<Weighed> {
         let (rates, velocity) = (0..k - 2, k - 2..k);
-        let any_velocity = if against < 0.0 { Some(self.of_sizes(&sized(&velocity, tuning::ANY))?) } else { None };
-        let some = [rates.clone(), velocity.clone(), 0..k];
+        let some = [(rates, of_rates, 0.0), (velocity, self, against), (0..k, self, against)];
         let each = tuning::PRIOR / (some.len() * tuning::SIZES.len()) as f64;
-        let mut all = 1.0 - tuning::PRIOR;
-        let (mut probability, mut apart, mut beside) = (0.0, CentredMatrix::zeros(), CentredMatrix::zeros());
-        for (members, size) in some.iter().flat_map(|members| tuning::SIZES.map(|size| (members, size))) {
-            let sizes = sized(members, size);
-            let mut changes = self.of_sizes(&sizes)?;
-            changes.logarithm += against;
-            if let Some(any) = any_velocity.as_ref().filter(|_| *members == rates) {
-                let beside = self.beside_velocity(&sizes, &velocity, any)?;
-                changes = if beside.logarithm > changes.logarithm { beside } else { changes };
+        let (mut all, mut probability) = (1.0 - tuning::PRIOR, 0.0);
+        let mut moments = [Moments::none(), Moments::none()];
+        for (number, (members, changes, against)) in some.iter().enumerate() {
+            let moments = &mut moments[number.min(1)];
+            for size in tuning::SIZES {
+                let sizes = sized(members, size);
+                let OfSizes { logarithm, found, factor } = changes.of_sizes(&sizes)?;
+                let left = factor.inverse();
+                let weight = each * (logarithm + against).min(tuning::LARGEST_LOGARITHM).exp();
+                all += weight;
+                // Of a size that frames do not tell from none, a change is no other motion.
+                probability += weight * members.clone().map(|i| 1.0 - left[(i, i)]).fold(0.0, f64::max);
+                moments.apart += found * found.transpose() * weight;
+                moments.beside += left.component_mul(&(sizes * sizes.transpose())) * weight;
             }
-            let OfSizes { logarithm, found, factor } = changes;
-            let left = factor.inverse();
-            let weight = each * logarithm.min(tuning::LARGEST_LOGARITHM).exp();
-            all += weight;
-            // Of a size that frames do not tell from none, a change is no other motion.
-            probability += weight * members.clone().map(|i| 1.0 - left[(i, i)]).fold(0.0, f64::max);
-            apart += found * found.transpose() * weight;
-            beside += left.component_mul(&(sizes * sizes.transpose())) * weight;
         }
-        Some(Weighed { probability: probability / all, apart: apart / all, beside: beside / all })
+        let [of_rates, others] = moments.map(|moments| moments.divided(all));
+        Some(Weighed { probability: probability / all, of_rates, others })
     }
 }
 
@@ -222,35 +264,49 @@ mod tests {
     fn found_at(deviations: f64) -> Weighed {
         let information = CentredMatrix::from_diagonal(&CentredVector::from_fn(|i, _| if i < 3 { 4.0 } else { 1.0 }));
         let score = CentredVector::from_fn(|i, _| if i == 0 { 2.0 * deviations } else { 0.0 });
-        Changes { information, score }.weighed(3, 0.0).expect("regular")
+        let changes = Changes { information, score };
+        changes.weighed(3, 0.0, &changes).expect("regular")
     }
 
     #[test]
     fn a_change_that_is_not_found_is_less_probable_than_before_and_one_of_six_deviations_is_beyond_doubt() {
         let [none, some, clear] = [0.0, 2.0, 6.0].map(found_at);
-        assert!(none.probability < 0.3 * tuning::PRIOR && none.apart.amax() == 0.0, "{}", none.probability);
+        let apart = |weighed: &Weighed| weighed.of_rates.apart + weighed.others.apart;
+        assert!(none.probability < 0.3 * tuning::PRIOR && apart(&none).amax() == 0.0, "{}", none.probability);
         assert!(none.probability < some.probability && some.probability < 0.5, "{}", some.probability);
         assert!(clear.probability > 0.9, "{}", clear.probability);
         // Nearly all of the three units that are found are there, known to about half a unit.
-        let size = clear.apart[(0, 0)].sqrt();
+        let size = apart(&clear)[(0, 0)].sqrt();
         assert!((2.7..3.0).contains(&size), "{size}");
-        assert!((0.4..0.5).contains(&clear.beside[(0, 0)].sqrt()), "{}", clear.beside);
+        let beside = clear.of_rates.beside + clear.others.beside;
+        assert!((0.4..0.5).contains(&beside[(0, 0)].sqrt()), "{beside}");
     }
 
     #[test]
     fn what_explains_a_change_of_the_velocity_rules_out_no_change_of_the_spin() {
         let information = CentredMatrix::from_diagonal(&CentredVector::from_fn(|i, _| if i < 3 { 4.0 } else { 1.0 }));
+        let whole = |score: CentredVector| Changes { information, score };
+        // Whatever way the centroid goes.
+        let alone = |score: CentredVector| {
+            let information =
+                CentredMatrix::from_diagonal(&CentredVector::from_fn(|i, _| if i == 0 { 4.0 } else { 1.0 }));
+            Changes { information, score: CentredVector::from_fn(|i, _| if i == 0 { score[i] } else { 0.0 }) }
+        };
         // Six deviations of the turn, or of the velocity; with nothing else to explain them, and with something that does so far better.
         let [[spin, velocity], [spin_beside, velocity_beside]] = [0.0, -100.0].map(|against| {
             [0, 2].map(|number| {
                 let score = CentredVector::from_fn(|i, _| if i == number { 12.0 } else { 0.0 });
-                Changes { information, score }.weighed(3, against).expect("regular")
+                whole(score).weighed(3, against, &alone(score)).expect("regular")
             })
         });
         assert!([spin, velocity].iter().all(|weighed| weighed.probability > 0.9));
-        assert!(spin_beside.probability > 0.9 && spin_beside.apart[(0, 0)] > 2.0, "{}", spin_beside.probability);
-        // Of the velocity nothing is left but what the spin may do unseen.
-        assert!(velocity_beside.probability < 0.3 * tuning::PRIOR && velocity_beside.apart.amax() < 1e-12);
+        assert!(
+            spin_beside.probability > 0.9 && spin_beside.of_rates.apart[(0, 0)] > 2.0,
+            "{}",
+            spin_beside.probability
+        );
+        // Of the velocity nothing is left.
+        assert!(velocity_beside.probability < 0.3 * tuning::PRIOR && velocity_beside.others.apart.amax() < 1e-12);
     }
 
     /// Columns of the propagation of errors over a step, by finite differences and as the covariance is carried.
