@@ -7,7 +7,7 @@ use nalgebra::{Matrix2, Point2, Vector2};
 
 use super::{
     centred::{CentredVector, moved_by},
-    perspective::{in_centred_order, in_order_of_model, without_shift},
+    perspective::{in_centred_order, in_order_of_model, local_of, without_shift},
 };
 
 /// The error that a logarithm about the centroid is.
@@ -17,8 +17,7 @@ pub(super) fn of_logarithm(model: MotionModel, logarithm: &CentredVector) -> Opt
     }
     let map = model.flow(&in_order_of_model(logarithm), 1.0).into_inner();
     let shift = map_point(&map, &Point2::origin());
-    let local = moved_by(-shift.x, -shift.y) * map;
-    let mut error = in_centred_order(&model.motion_between(&local, 1.0)?);
+    let mut error = in_centred_order(&model.motion_between(&local_of(&map)?, 1.0)?);
     error.fixed_rows_mut::<2>(MAX_PARAMETERS - 2).copy_from(&shift.coords);
     Some(error)
 }

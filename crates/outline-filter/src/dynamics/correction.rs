@@ -48,13 +48,14 @@ pub(super) fn less_known(information: CentredMatrix, off: &CentredDeviations) ->
 }
 
 /// Information on the rates of a pose of k parameters alone, wherever its centroid is.
-pub(super) fn of_rates_alone(information: &CentredMatrix, k: usize) -> Option<CentredMatrix> {
-    let (rates, place) = (k - 2, information.fixed_view::<2, 2>(k - 2, k - 2));
+pub(super) fn of_rates_alone(information: &CentredMatrix, k: usize) -> CentredMatrix {
+    let place = information.fixed_view::<2, 2>(k - 2, k - 2).into_owned();
+    let across = information.fixed_view::<LARGEST, 2>(0, k - 2).into_owned();
     // Along what the frame says nothing of, it says nothing of the rates beside either.
-    let regular = place + Matrix2::from_diagonal_element(tuning::SINGULAR * place.trace() + f64::MIN_POSITIVE);
-    let across = information.fixed_view::<LARGEST, 2>(0, k - 2);
-    let taken = across * regular.try_inverse()? * across.transpose();
-    Some(CentredMatrix::from_fn(|i, j| if i < rates && j < rates { information[(i, j)] - taken[(i, j)] } else { 0.0 }))
+    let regular = place + Matrix2::from_diagonal_element(tuning::SINGULAR * place.trace());
+    let taken = regular.try_inverse().map(|inverse| across * inverse * across.transpose());
+    let taken = taken.filter(|taken| taken.iter().all(|entry| entry.is_finite())).unwrap_or_default();
+    CentredMatrix::from_fn(|i, j| if i < k - 2 && j < k - 2 { information[(i, j)] - taken[(i, j)] } else { 0.0 })
 }
 
 /// Solution of `W x = b` for a matrix that may be singular: none along what it says nothing of.
@@ -242,6 +243,25 @@ mod tests {
 
     use super::*;
     use crate::dynamics::course::Course;
+
+    #[test]
+    fn the_rates_alone_are_known_as_by_the_inverse_of_what_is_known_of_the_whole_pose() {
+        let k = 3;
+        let mut information = CentredMatrix::zeros();
+        information
+            .fixed_view_mut::<3, 3>(0, 0)
+            .copy_from(&nalgebra::Matrix3::new(5.0, 1.0, -2.0, 1.0, 3.0, 0.5, -2.0, 0.5, 4.0));
+        let whole = information.fixed_view::<3, 3>(0, 0).into_owned().try_inverse().expect("regular");
+        let alone = of_rates_alone(&information, k);
+        assert!((alone[(0, 0)] * whole[(0, 0)] - 1.0).abs() < 1e-8, "{alone}");
+        assert_eq!(alone.sum(), alone[(0, 0)]);
+        // Of a strip that shows its turn and the place across alone, and of what shows no place.
+        (1..3).for_each(|i| (information[(i, 2)], information[(2, i)]) = (0.0, 0.0));
+        (information[(0, 2)], information[(2, 0)]) = (0.0, 0.0);
+        assert!((of_rates_alone(&information, k)[(0, 0)] - (5.0 - 1.0 / 3.0)).abs() < 1e-8);
+        let turn = CentredMatrix::from_fn(|i, j| if i + j == 0 { 5.0 } else { 0.0 });
+        assert_eq!(of_rates_alone(&turn, k), turn);
+    }
 
     /// Largest difference from the plain way, in units of what is there: `(I + W P)^-1 W` by elimination, for information of a rank on a pose of K
     /// parameters.

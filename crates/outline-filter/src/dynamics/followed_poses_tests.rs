@@ -151,7 +151,7 @@ impl<'a> Run<'a> {
         let measured = PoseMeasurement {
             information: about_centroid.transpose() * by_centroid * about_centroid,
             pulled: about_centroid.transpose() * (by_centroid * seen),
-            linearised_at: off,
+            solution: off,
             noise_inflation: 1.0,
         };
         filter.update(&measured, &SVector::zeros());

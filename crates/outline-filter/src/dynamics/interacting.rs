@@ -227,9 +227,9 @@ impl<const N: usize> InteractingHypotheses<N> {
         let pulled = to.transpose() * pulled;
         let pulled = CentredVector::from_fn(|i, _| if i < k { pulled[i] } else { 0.0 });
         let Some(deviation) = solved(&information, &pulled, k) else { return };
-        // Not by the deviation itself, of which what the frame hardly tells may be anything.
-        let linearised_at = self.reference.about_centroid(self.model) * measured.linearised_at;
-        let Some(beyond) = of_logarithm(self.model, &linearised_at).map(|error| error - linearised_at) else { return };
+        // The correction is that of the solution: the deviation may be anything along what the frame hardly tells.
+        let solution = self.reference.about_centroid(self.model) * measured.solution;
+        let beyond = of_logarithm(self.model, &solution).map_or(CentredVector::zeros(), |error| error - solution);
         let deviation = deviation + beyond;
         let Some(information) = less_known(information, off) else { return };
         for j in 0..k {
@@ -251,10 +251,10 @@ impl<const N: usize> InteractingHypotheses<N> {
             let (logarithm, score) = arrival.update(&measurement, (logarithms[number], standardised[number]));
             (logarithms[number], standardised[number]) = (logarithm, score);
         }
-        if let Some((change, of_rates)) = self.steady_change.as_mut().zip(of_rates_alone(&information, k)) {
+        if let Some(change) = &mut self.steady_change {
             let is_velocity = |h: &Hypothesis<N>| h.course == Course::straight(PointOfBody::NearCentroid);
             let velocity = self.hypotheses.iter().position(is_velocity);
-            let of_rates = CentredMeasurement { root: root_of(&of_rates, k), ..measurement };
+            let of_rates = CentredMeasurement { root: root_of(&of_rates_alone(&information, k), k), ..measurement };
             change.update([&measurement, &of_rates], velocity.map(|number| logarithms[number]));
         }
         let largest = logarithms.iter().copied().fold(f64::NEG_INFINITY, f64::max);

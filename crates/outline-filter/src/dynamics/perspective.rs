@@ -170,7 +170,7 @@ pub(super) fn without_shift(motion: &CentredVector, seconds: f64) -> Matrix3<f64
 }
 
 /// A map with the origin taken back to where it was; `None` if it takes the origin to infinity.
-fn local_of(map: &Matrix3<f64>) -> Option<Matrix3<f64>> {
+pub(super) fn local_of(map: &Matrix3<f64>) -> Option<Matrix3<f64>> {
     let shift = map_point(map, &Point2::origin());
     let mut local = moved_by(-shift.x, -shift.y) * map;
     local /= local[(2, 2)];

@@ -27,7 +27,7 @@ pub(super) struct SteadyChange<const N: usize> {
     frames: usize,
 }
 
-/// The hypotheses by their numbers. Any way is a straight one of which frames tell nothing.
+/// The hypotheses by their numbers. The last has the dynamics of the second, and no measurement of the place.
 const GENERATOR: usize = 0;
 const STRAIGHT: usize = 1;
 const ANY_WAY: usize = 2;
@@ -230,14 +230,16 @@ impl Changes {
     /// Weighs changes of k parameters, with a logarithm `against` those of the velocity; those of the rates alone by what is said of them.
     fn weighed(&self, k: usize, against: f64, of_rates: &Self) -> Option<Weighed> {
         let (rates, velocity) = (0..k - 2, k - 2..k);
-        let some = [(rates, of_rates, 0.0), (velocity, self, against), (0..k, self, against)];
+        let (mut by_rates, mut others) = (Moments::none(), Moments::none());
+        let some = [rates, velocity, 0..k];
         let each = tuning::PRIOR / (some.len() * tuning::SIZES.len()) as f64;
         let (mut all, mut probability) = (1.0 - tuning::PRIOR, 0.0);
-        let mut moments = [Moments::none(), Moments::none()];
-        for (number, (members, changes, against)) in some.iter().enumerate() {
-            let moments = &mut moments[number.min(1)];
+        for members in some {
+            let is_of_rates = members.end < k;
+            let (changes, against) = if is_of_rates { (of_rates, 0.0) } else { (self, against) };
+            let moments = if is_of_rates { &mut by_rates } else { &mut others };
             for size in tuning::SIZES {
-                let sizes = sized(members, size);
+                let sizes = sized(&members, size);
                 let OfSizes { logarithm, found, factor } = changes.of_sizes(&sizes)?;
                 let left = factor.inverse();
                 let weight = each * (logarithm + against).min(tuning::LARGEST_LOGARITHM).exp();
@@ -248,7 +250,7 @@ impl Changes {
                 moments.beside += left.component_mul(&(sizes * sizes.transpose())) * weight;
             }
         }
-        let [of_rates, others] = moments.map(|moments| moments.divided(all));
+        let [of_rates, others] = [by_rates, others].map(|moments| moments.divided(all));
         Some(Weighed { probability: probability / all, of_rates, others })
     }
 }
@@ -307,6 +309,7 @@ mod tests {
         );
         // Of the velocity nothing is left.
         assert!(velocity_beside.probability < 0.3 * tuning::PRIOR && velocity_beside.others.apart.amax() < 1e-12);
+        assert!(velocity_beside.of_rates.apart.amax() < 1e-12, "{}", velocity_beside.of_rates.apart);
     }
 
     /// Columns of the propagation of errors over a step, by finite differences and as the covariance is carried.

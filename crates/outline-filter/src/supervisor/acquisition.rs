@@ -43,7 +43,7 @@ impl MotionFilter {
                 if !knows_turn {
                     return self.search(time, seconds, outline);
                 }
-                history.record(&outcome, seconds);
+                history.record(&outcome, seconds, None);
                 self.replace(going_on, history, time, Phase::Tracking);
                 return Some(self.look_elsewhere(outcome.after_rejected(), time, outline));
             }

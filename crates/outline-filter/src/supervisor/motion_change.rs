@@ -7,9 +7,10 @@ use super::settings::FilterSettings;
 use crate::{
     belief::StateMatrix,
     dynamics::DynamicsFilter,
+    map::NullDirections,
     prediction::{ByKind, PoseMatrix},
     track::{Outcome, Track},
-    tuning::{dynamics::OUTSIDE_INTERVAL, motion_change as tuning, statement::REACH},
+    tuning::{motion_change as tuning, statement::REACH},
     update::{PoseInnovation, PoseMeasurement},
 };
 #[cfg(feature = "serde")]
@@ -49,26 +50,32 @@ pub(super) struct MotionHistory {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Contradiction {
-    /// Error of the expected pose, normalised, of a turn that is small, by the time since a frame was taken last.
-    change: PoseVector,
-    /// Of that error, by the square of that time.
-    covariance: PoseMatrix,
-    shown: Shown,
+    apart: Apart,
+    /// Time from the last frame that was taken to this one.
+    after: f64,
 }
 
 /// How far an object lies from where it was expected, as a frame shows it.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Apart {
-    /// Error of the expected pose, like those of the belief.
+    /// Error of the expected pose, like those of the belief, of a turn that is small.
     pub(super) error: PoseVector,
     pub(super) covariance: PoseMatrix,
     pub(super) shown: Shown,
 }
 
 impl Apart {
-    /// As a frame tells it that shows the outline.
-    pub(super) fn measured(pose: &PoseMeasurement) -> Option<Self> {
-        Some(Self { error: pose.error()?, covariance: pose.covariance()?, shown: Shown::Whole })
+    /// As a frame tells it that shows the outline; along what the outline does not show, nothing.
+    pub(super) fn measured(pose: &PoseMeasurement, shown: Shown, null: &NullDirections) -> Option<Self> {
+        let (mut error, mut covariance) = (pose.error()?, pose.covariance()?);
+        for direction in null.iter() {
+            direction.subtract_from(&mut error.data.0[0]);
+            covariance.data.0.iter_mut().for_each(|column| direction.subtract_from(column));
+            covariance.transpose_mut();
+            covariance.data.0.iter_mut().for_each(|column| direction.subtract_from(column));
+        }
+        Some(Self { error, covariance, shown })
     }
 }
 
@@ -83,11 +90,10 @@ pub(super) enum Shown {
 }
 
 impl Shown {
-    /// How many times faster than on the mean since a frame was taken last the object may move now. Its motion may have changed at any time meanwhile:
-    /// in the last twentieth of it once in twenty times.
+    /// How many times faster than on the mean since a frame was taken last the object may move now.
     fn times_faster(self) -> f64 {
         match self {
-            Self::Whole => 1.0 / OUTSIDE_INTERVAL,
+            Self::Whole => tuning::TIMES_FASTER,
             Self::InPart => 1.0,
         }
     }
@@ -114,8 +120,9 @@ impl MotionHistory {
         (dynamics.widening() * share * share).max(1.0)
     }
 
-    /// Records what became of a frame some time after the one before.
-    pub(super) fn record(&mut self, outcome: &Outcome, seconds: f64) {
+    /// Records what became of a frame some time after the one before; `apart` is how far the object lies from where it was expected, as one shows it that
+    /// was not taken.
+    pub(super) fn record(&mut self, outcome: &Outcome, seconds: f64, apart: Option<Apart>) {
         self.since_taken += seconds;
         if outcome.is_accepted() {
             (self.contradiction, self.since_taken) = (None, 0.0);
@@ -130,8 +137,8 @@ impl MotionHistory {
                     self.dynamics = None;
                 }
             }
-        } else if let Some(apart) = outcome.pose.as_ref().and_then(Apart::measured) {
-            self.record_apart(&apart);
+        } else if let Some(apart) = apart {
+            self.contradiction = Some(Contradiction { apart, after: self.since_taken });
         }
         self.end_step();
     }
@@ -141,20 +148,13 @@ impl MotionHistory {
         self.dynamics.as_mut().into_iter().for_each(DynamicsFilter::end_step);
     }
 
-    /// Records how far from where it was expected a frame shows the object that was not taken, and has been recorded.
-    pub(super) fn record_apart(&mut self, apart: &Apart) {
-        let Apart { error, covariance, shown } = *apart;
-        let since = self.since_taken;
-        self.contradiction =
-            Some(Contradiction { change: error / since, covariance: covariance / (since * since), shown });
-    }
-
     /// A covariance of pose and motion, of k parameters, by which an interval of 95 % reaches what a frame shows that has not been taken.
     pub(super) fn contradicted(&self, k: usize) -> Option<StateMatrix> {
-        let Contradiction { change, covariance, shown } = self.contradiction?;
-        let squares = REACH * change * change.transpose() + covariance;
-        // Of the pose, and of the motion that has led to it.
-        let times = [self.since_taken, shown.times_faster()];
+        let Contradiction { apart: Apart { error, covariance, shown }, after } = self.contradiction?;
+        let squares = REACH * error * error.transpose() + covariance;
+        // Of the motion since that frame, and of the pose that it has led to.
+        let faster = shown.times_faster() / after;
+        let times = [1.0 + faster * (self.since_taken - after), faster];
         Some(StateMatrix::from_fn(|i, j| {
             if i < 2 * k && j < 2 * k { times[i / k] * times[j / k] * squares[(i % k, j % k)] } else { 0.0 }
         }))
@@ -271,8 +271,13 @@ impl MotionHistory {
     pub(super) fn is_valid(&self, settings: &FilterSettings) -> bool {
         let of_settings = |dynamics: &DynamicsFilter| dynamics.is_valid(settings.model, settings.followed_dynamics());
         let are_in_bounds = |numbers: &[f64]| numbers.iter().all(|entry| entry.abs() < StateFormat::LARGEST_NUMBER);
-        let is_change = |contradiction: &Contradiction| {
-            are_in_bounds(contradiction.change.as_slice()) && are_in_bounds(contradiction.covariance.as_slice())
+        let is_change = |Contradiction { apart, after }: &Contradiction| {
+            let Apart { error, covariance, .. } = apart;
+            are_in_bounds(error.as_slice())
+                && are_in_bounds(covariance.as_slice())
+                && covariance.diagonal().iter().all(|variance| *variance >= 0.0)
+                && *after > 0.0
+                && are_in_bounds(&[*after])
         };
         self.change.is_finite()
             && self.dynamics.as_ref().is_none_or(of_settings)

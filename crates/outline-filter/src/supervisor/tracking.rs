@@ -134,14 +134,12 @@ pub(super) fn advance(
         Some(apart) => found_elsewhere(outcome, settings, (track, frame), (apart, history.since_taken + seconds)),
         None => (outcome, None),
     };
-    history.record(&outcome, seconds);
+    let apart = apart.or_else(|| apart_by(settings, track, &outcome));
+    history.record(&outcome, seconds, apart);
     if outcome.is_accepted()
         && let Some(dynamics) = history.dynamics.as_mut().filter(|dynamics| dynamics.leads())
     {
         track.renew_common_error(dynamics);
-    }
-    if let Some(apart) = apart {
-        history.record_apart(&apart);
     }
     Some(outcome)
 }
@@ -160,7 +158,7 @@ pub(super) fn advance_again(
     let gates = Gates::of_accepted_frame(settings, track, history.widening(track));
     let known = (turns, Comparison::NotAsked);
     let (outcome, _) = outcome_with_changes(settings, (track, frame), history, (seconds, &gates), known);
-    history.record(&outcome, seconds);
+    history.record(&outcome, seconds, apart_by(settings, track, &outcome));
     Some(outcome)
 }
 
@@ -231,18 +229,31 @@ fn found_elsewhere(
     let is_here = whole.verdict(&outcome.measurement).is_ok();
     let mut displaced = track.clone();
     if !is_here && displaced.displace(&error, since_taken) {
+        let begun = *displaced.body_pose();
         let found = displaced.update(frame, &whole, Comparison::NotAsked);
         if found.is_accepted() {
             let distance = track.in_image_lengths(displaced.displacement_from(track.body_pose()));
             // As the frame by itself shows it, whatever was expected.
-            let measured = found.pose.as_ref().and_then(Apart::measured);
-            let apart = measured.map(|measured| Apart { error: measured.error + error, ..measured });
+            let null = track.null_directions();
+            let measured = found.pose.as_ref().and_then(|pose| Apart::measured(pose, Shown::Whole, &null));
+            let from_begun = measured.and_then(|Apart { error, covariance, .. }| {
+                let pose = track.model().flow(&error.as_slice()[..track.model().parameter_count()], 1.0).into_inner();
+                Some((track.error_to(&(pose * begun))?, covariance))
+            });
+            let (error, covariance) = from_begun.unwrap_or((error, PoseMatrix::zeros()));
             let outcome = Outcome { verdict: Err(Rejection::Elsewhere { distance }), ..outcome };
-            return (outcome, apart);
+            return (outcome, Some(Apart { error, covariance, shown: Shown::Whole }));
         }
     }
     let in_part = Apart { error, covariance: PoseMatrix::zeros(), shown: Shown::InPart };
     (outcome, (!is_noisy).then_some(in_part))
+}
+
+/// How far the outline lies from where it was expected, as a frame tells it that shows it and was not taken.
+fn apart_by(settings: &FilterSettings, track: &Track, outcome: &Outcome) -> Option<Apart> {
+    let pose = outcome.pose.as_ref().filter(|_| !outcome.is_accepted())?;
+    let is_whole = outcome.measurement.agreement >= track.gate_of_all(gate(settings, track)).smallest_agreement;
+    Apart::measured(pose, if is_whole { Shown::Whole } else { Shown::InPart }, &track.null_directions())
 }
 
 /// Whether a frame may show the outline elsewhere than it was expected: the sides of a bar that has moved along itself may still lie on it, and its

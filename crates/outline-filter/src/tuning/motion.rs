@@ -14,6 +14,9 @@ pub(crate) mod motion_change {
     pub(crate) const BEYOND_CHANCE: f64 = 8.0;
     /// ...and up to which one frame counts at most so many deviations of its slope as evidence, which takes several frames that agree.
     pub(crate) const EVIDENCE: f64 = 4.0;
+    /// How many times faster than on the mean since a frame was taken last an object may move that is found elsewhere: if its motion has changed at any time
+    /// meanwhile, it was in the last twentieth once in twenty times, and an interval of 95 % reaches that.
+    pub(crate) const TIMES_FASTER: f64 = 20.0;
 }
 
 /// Phases of the filter, and what of the motion is stated.

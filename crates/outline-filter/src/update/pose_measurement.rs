@@ -20,8 +20,8 @@ pub(crate) struct PoseMeasurement {
     pub(crate) information: PoseMatrix,
     /// W times the error that the frame asks for.
     pub(crate) pulled: SVector<f64, MAX_PARAMETERS>,
-    /// The error in which the frame was linearised last, by all that is known.
-    pub(crate) linearised_at: SVector<f64, MAX_PARAMETERS>,
+    /// The error that all that is known and the frame together ask for.
+    pub(crate) solution: SVector<f64, MAX_PARAMETERS>,
     /// Factor, at least 1, of the variance of the pose for hypotheses of motions that change at random, (64a) in docs/motion-filter.md.
     pub(crate) noise_inflation: f64,
 }
@@ -56,7 +56,7 @@ impl PoseMeasurement {
                 if i < K && j < K { 0.5 * (information[i][j] + information[j][i]) } else { 0.0 }
             }),
             pulled: SVector::from_fn(|i, _| if i < K { pulled[i] } else { 0.0 }),
-            linearised_at: SVector::from_fn(|i, _| if i < K { proposal.state[i] } else { 0.0 }),
+            solution: SVector::from_fn(|i, _| if i < K { proposal.state[i] } else { 0.0 }),
             noise_inflation: 1.0,
         }
     }

@@ -107,6 +107,6 @@ fn the_velocity_of_a_ball_of_few_pixels_is_stated_though_its_errors_look_like_a_
         assert!(off.component_div(&std).amax() < 4.0, "seed {seed}: {found:?}");
         stated += 1;
     }
-    // Of 150 seeds 122 are.
+    // Of 150 seeds 122 are, and 128 were before shifts of poses were told from velocities of their logarithms: which ones differs with every last digit.
     assert!(4 * stated >= 3 * SEEDS, "{stated} of {SEEDS}");
 }
