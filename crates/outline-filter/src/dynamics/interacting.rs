@@ -9,7 +9,7 @@ use super::{
     centred::{CentredDeviations, CentredPose, CentredVector, LARGEST, Summary, carried},
     centroid_shift::of_logarithm,
     common_error::CommonError,
-    correction::{less_known, of_rates_alone, root_of, solved},
+    correction::{less_known, root_of, solved},
     course::{Course, PointOfBody},
     hypothesis::{CentredMeasurement, Hypothesis},
     innovations::InnovationSeries,
@@ -254,8 +254,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         if let Some(change) = &mut self.steady_change {
             let is_velocity = |h: &Hypothesis<N>| h.course == Course::straight(PointOfBody::NearCentroid);
             let velocity = self.hypotheses.iter().position(is_velocity);
-            let of_rates = CentredMeasurement { root: root_of(&of_rates_alone(&information, k), k), ..measurement };
-            change.update([&measurement, &of_rates], velocity.map(|number| logarithms[number]));
+            change.update((&measurement, &information), velocity.map(|number| logarithms[number]));
         }
         let largest = logarithms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         if !largest.is_finite() {

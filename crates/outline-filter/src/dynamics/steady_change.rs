@@ -6,6 +6,7 @@ use nalgebra::{Cholesky, Const, SMatrix, SVector};
 
 use super::{
     centred::{CentredDeviations, CentredMatrix, CentredVector, LARGEST},
+    correction::{of_rates_alone, root_of},
     course::Course,
     hypothesis::{CentredMeasurement, Hypothesis},
 };
@@ -68,18 +69,27 @@ impl<const N: usize> SteadyChange<N> {
         if self.is_over() { &mut [] } else { &mut self.hypotheses }
     }
 
-    /// Takes a frame, and what it tells of the rates alone; `velocity` is the logarithm of its likelihood where the velocity of a point near the centroid
-    /// is constant.
-    pub(super) fn update(&mut self, [whole, rates]: [&CentredMeasurement; 2], velocity: Option<f64>) {
+    /// Takes a frame, of which the information is given too, as long as it is followed; `velocity` is the logarithm of its likelihood where the velocity of
+    /// a point near the centroid is constant.
+    pub(super) fn update(
+        &mut self,
+        (measurement, information): (&CentredMeasurement, &CentredMatrix),
+        velocity: Option<f64>,
+    ) {
+        if self.is_over() {
+            return;
+        }
+        let k = Hypothesis::<N>::K;
+        let of_rates = CentredMeasurement { root: root_of(&of_rates_alone(information, k), k), ..*measurement };
         let mut gained = 0.0;
-        for (number, hypothesis) in self.hypotheses().iter_mut().enumerate() {
-            let innovation = hypothesis.update(if number == ANY_WAY { rates } else { whole });
+        for (number, hypothesis) in self.hypotheses.iter_mut().enumerate() {
+            let innovation = hypothesis.update(if number == ANY_WAY { &of_rates } else { measurement });
             if let Some((changes, velocity)) = innovation.zip(velocity).filter(|_| number == STRAIGHT) {
                 gained = changes.log_likelihood - velocity;
             }
         }
         self.over_velocity += if gained.is_finite() { gained } else { 0.0 };
-        self.frames = (self.frames + 1).min(tuning::FRAMES);
+        self.frames += 1;
     }
 
     /// Whether all numbers can be worked with.

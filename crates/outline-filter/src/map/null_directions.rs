@@ -37,7 +37,7 @@ impl NullDirection {
     }
 
     /// Subtracts the part of a motion that is in this direction.
-    pub(crate) fn subtract_from(&self, motion: &mut ParameterVector) {
+    fn subtract_from(&self, motion: &mut ParameterVector) {
         let part: f64 = motion.iter().zip(&self.dual).map(|(a, b)| a * b).sum();
         motion.iter_mut().zip(&self.direction).for_each(|(m, d)| *m -= part * d);
     }
@@ -58,6 +58,11 @@ impl NullDirections {
             self.iter().for_each(|direction| moved.push(direction.moved(model, (pose, &inverse))));
         }
         moved
+    }
+
+    /// Subtracts the part of a motion that is in these directions.
+    pub(crate) fn subtract_from(&self, motion: &mut ParameterVector) {
+        self.iter().for_each(|direction| direction.subtract_from(motion));
     }
 
     /// Adds a direction. Of independent directions there are no more than there is room for: another is not taken.

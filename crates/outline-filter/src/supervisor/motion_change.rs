@@ -68,12 +68,12 @@ pub(super) struct Apart {
 impl Apart {
     /// As a frame tells it that shows the outline; along what the outline does not show, nothing.
     pub(super) fn measured(pose: &PoseMeasurement, shown: Shown, null: &NullDirections) -> Option<Self> {
-        let (mut error, mut covariance) = (pose.error()?, pose.covariance()?);
-        for direction in null.iter() {
-            direction.subtract_from(&mut error.data.0[0]);
-            covariance.data.0.iter_mut().for_each(|column| direction.subtract_from(column));
+        let (mut error, mut covariance) = pose.error()?;
+        null.subtract_from(&mut error.data.0[0]);
+        // On both sides: of the columns, and of the rows as columns.
+        for _ in 0..2 {
+            covariance.data.0.iter_mut().for_each(|column| null.subtract_from(column));
             covariance.transpose_mut();
-            covariance.data.0.iter_mut().for_each(|column| direction.subtract_from(column));
         }
         Some(Self { error, covariance, shown })
     }

@@ -226,27 +226,22 @@ fn found_elsewhere(
     let whole = track.gate_of_all(gate(settings, track));
     // Points of an object that has been at rest scatter more once it moves. Where that is all that speaks against a frame, they must scatter less there.
     let whole = if is_noisy { whole } else { whole.without_noise() };
-    let is_here = whole.verdict(&outcome.measurement).is_ok();
     let mut displaced = track.clone();
-    if !is_here && displaced.displace(&error, since_taken) {
-        let begun = *displaced.body_pose();
-        let found = displaced.update(frame, &whole, Comparison::NotAsked);
-        if found.is_accepted() {
-            let distance = track.in_image_lengths(displaced.displacement_from(track.body_pose()));
-            // As the frame by itself shows it, whatever was expected.
-            let null = track.null_directions();
-            let measured = found.pose.as_ref().and_then(|pose| Apart::measured(pose, Shown::Whole, &null));
-            let from_begun = measured.and_then(|Apart { error, covariance, .. }| {
-                let pose = track.model().flow(&error.as_slice()[..track.model().parameter_count()], 1.0).into_inner();
-                Some((track.error_to(&(pose * begun))?, covariance))
-            });
-            let (error, covariance) = from_begun.unwrap_or((error, PoseMatrix::zeros()));
-            let outcome = Outcome { verdict: Err(Rejection::Elsewhere { distance }), ..outcome };
-            return (outcome, Some(Apart { error, covariance, shown: Shown::Whole }));
-        }
-    }
-    let in_part = Apart { error, covariance: PoseMatrix::zeros(), shown: Shown::InPart };
-    (outcome, (!is_noisy).then_some(in_part))
+    let is_displaced = whole.verdict(&outcome.measurement).is_err() && displaced.displace(&error, since_taken);
+    let begun = *displaced.body_pose();
+    let found = is_displaced.then(|| displaced.update(frame, &whole, Comparison::NotAsked));
+    let Some(found) = found.filter(Outcome::is_accepted) else {
+        let in_part = Apart { error, covariance: PoseMatrix::zeros(), shown: Shown::InPart };
+        return (outcome, (!is_noisy).then_some(in_part));
+    };
+    // As the frame by itself shows it, whatever was expected.
+    let measured = found.pose.as_ref().and_then(|pose| Apart::measured(pose, Shown::Whole, &track.null_directions()));
+    let from_expected =
+        measured.and_then(|apart| Some((track.error_to(&track.pose_off_by(&apart.error, &begun))?, apart.covariance)));
+    let (error, covariance) = from_expected.unwrap_or((error, PoseMatrix::zeros()));
+    let distance = track.in_image_lengths(displaced.displacement_from(track.body_pose()));
+    let outcome = Outcome { verdict: Err(Rejection::Elsewhere { distance }), ..outcome };
+    (outcome, Some(Apart { error, covariance, shown: Shown::Whole }))
 }
 
 /// How far the outline lies from where it was expected, as a frame tells it that shows it and was not taken.

@@ -21,9 +21,8 @@ impl Track {
     /// outline is displaced then, the motion may be another. False, and nothing changes, where the outline [is not shown](Track::is_shown) there.
     #[must_use]
     pub(crate) fn displace(&mut self, displacement: &SVector<f64, MAX_PARAMETERS>, seconds: f64) -> bool {
-        let (k, step) = (self.belief.parameter_count(), self.belief.memory.step);
-        let before = self.belief.pose;
-        let pose = self.model().flow(&displacement.as_slice()[..k], 1.0).into_inner() * before;
+        let (step, before) = (self.belief.memory.step, self.belief.pose);
+        let pose = self.pose_off_by(displacement, &before);
         if seconds <= 0.0 || step <= 0.0 || !self.map.is_shown_in(&pose) {
             return false;
         }
@@ -34,11 +33,16 @@ impl Track {
         true
     }
 
+    /// The pose that is right if another one has an error, on the left.
+    pub(crate) fn pose_off_by(&self, error: &SVector<f64, MAX_PARAMETERS>, pose: &Matrix3<f64>) -> Matrix3<f64> {
+        self.model().flow(&error.as_slice()[..self.belief.parameter_count()], 1.0).into_inner() * pose
+    }
+
     /// The error of the pose, on the left, if another one is right; none along what the outline does not show.
     pub(crate) fn error_to(&self, pose: &Matrix3<f64>) -> Option<SVector<f64, MAX_PARAMETERS>> {
         let change = logarithm(&(pose * self.body_pose().try_inverse()?))?;
         let mut error = self.model().parameters_of(&change);
-        self.null_directions().iter().for_each(|null| null.subtract_from(&mut error));
+        self.null_directions().subtract_from(&mut error);
         Some(SVector::from(error))
     }
 

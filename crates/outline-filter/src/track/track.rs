@@ -302,9 +302,7 @@ impl Track {
     /// it is the one without them: the object is not known to turn or slide in ways that its outline does not show.
     pub(crate) fn set_motion(&mut self, motion: ParameterVector) {
         self.belief.motion = motion;
-        for null in self.map.null_directions(self.belief.model, &self.belief.pose) {
-            null.subtract_from(&mut self.belief.motion);
-        }
+        self.map.null_directions(self.belief.model, &self.belief.pose).subtract_from(&mut self.belief.motion);
     }
 
     /// All that a frame is measured against.

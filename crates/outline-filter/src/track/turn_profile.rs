@@ -162,7 +162,7 @@ impl Track {
         let null = self.null_directions();
         let variance = self.noise.effective_variance();
         self.belief.forget(&null, variance);
-        null.iter().for_each(|null| null.subtract_from(&mut self.belief.motion));
+        null.subtract_from(&mut self.belief.motion);
     }
 }
 

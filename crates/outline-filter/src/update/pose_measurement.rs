@@ -61,16 +61,12 @@ impl PoseMeasurement {
         }
     }
 
-    /// The error of the predicted pose that the frame asks for, divided by a variance: next to none along what it hardly shows.
-    pub(crate) fn error(&self) -> Option<SVector<f64, MAX_PARAMETERS>> {
-        Some(self.covariance()? * self.pulled)
-    }
-
-    /// Covariance of that error.
-    pub(crate) fn covariance(&self) -> Option<PoseMatrix> {
-        (self.information + PoseMatrix::from_diagonal_element(1.0 / LARGEST_VARIANCE))
-            .cholesky()
-            .map(|root| root.inverse())
+    /// The error of the predicted pose that the frame asks for, divided by a variance, and its covariance. Along what the frame hardly shows the error is next
+    /// to none.
+    pub(crate) fn error(&self) -> Option<(SVector<f64, MAX_PARAMETERS>, PoseMatrix)> {
+        let information = self.information + PoseMatrix::from_diagonal_element(1.0 / LARGEST_VARIANCE);
+        let covariance = information.cholesky()?.inverse();
+        Some((covariance * self.pulled, covariance))
     }
 
     /// Over the effective variance of the noise, with the factor of (64a).

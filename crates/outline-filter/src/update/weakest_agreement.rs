@@ -1,14 +1,13 @@
 //! How much of what a frame tells of its pose comes from points that agree with the outline.
 use freeform_riccati::MAX_PARAMETERS;
-use nalgebra::{Matrix3, SMatrix, SVector};
+use nalgebra::{Matrix3, SVector};
 
 use super::gate::Agreeing;
 use crate::{
     measurement::{Frame, View},
+    prediction::PoseMatrix,
     tuning::update::UNTOLD_DIRECTION,
 };
-
-type PoseMatrix = SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>;
 
 impl View<'_> {
     /// Of all directions that the pose may err in, the one that points which agree with the outline say least of: how much that is of what a frame

@@ -101,8 +101,8 @@ fn a_body_that_is_shaken_without_turning_has_an_angular_velocity_that_is_known_a
 /// How far values are off after a blow, of which the time is given in frames, in deviations: the most of all frames, and the deviations of the velocity
 /// eight frames after it.
 fn after_blow(shape: BuiltInShape, seed: u64, blow: f64, (omega, velocity): (f64, Vector2<f64>)) -> (f64, f64) {
-    let at_rest = RigidMotion { omega: 0.0, b1: 0.0, b2: 0.0 };
     const NOISE: f64 = 0.0003;
+    let at_rest = RigidMotion { omega: 0.0, b1: 0.0, b2: 0.0 };
     let simulated = Settings { points: 300, noise: NOISE, ..settings(30, seed) };
     let mut run = filter(MotionModel::Rigid);
     let (mut off, mut deviation, mut middle) = (0.0_f64, f64::NAN, None);
