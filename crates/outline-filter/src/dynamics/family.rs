@@ -76,8 +76,7 @@ impl FamilyTests {
     }
 
     fn estimated(&self, model: MotionModel, of_side: f64) -> UnmodelledEstimate {
-        let moments = UnmodelledMatrix::zeros();
-        let mut estimate = UnmodelledEstimate { family: None, is_beyond_doubt: false, displacement: 0.0, moments };
+        let mut estimate = UnmodelledEstimate::of_nothing(UnmodelledMatrix::zeros());
         if self.weight <= 0.0 {
             return estimate;
         }
@@ -324,7 +323,7 @@ mod tests {
             let mut sizes = UnmodelledVector::zeros();
             sizes[member] = 0.02;
             let tests = after(40, &sizes, 7);
-            let UnmodelledEstimate { family: found, is_beyond_doubt, displacement, moments } =
+            let UnmodelledEstimate { family: found, is_beyond_doubt, displacement, moments, .. } =
                 tests.estimate(RIGID, 0.0);
             assert_eq!((*found, *is_beyond_doubt), (Some(family), true));
             let size = moments[(member, member)].sqrt();

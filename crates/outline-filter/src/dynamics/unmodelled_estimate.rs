@@ -11,11 +11,28 @@ pub(crate) struct UnmodelledEstimate {
     pub(crate) is_beyond_doubt: bool,
     /// Displacement of the outlines that is seen of that, root mean square, normalised.
     pub(crate) displacement: f64,
+    /// How far the outline has changed its shape since the map became known, whatever explains it, root mean square, normalised.
+    pub(crate) change_of_shape: f64,
     /// Second moments of the sizes of the motions that may be there.
     pub(crate) moments: UnmodelledMatrix,
 }
 
 impl UnmodelledEstimate {
+    /// That nothing is known of, with second moments of what may be there.
+    pub(super) const fn of_nothing(moments: UnmodelledMatrix) -> Self {
+        Self { family: None, is_beyond_doubt: false, displacement: 0.0, change_of_shape: 0.0, moments }
+    }
+
+    /// The most that points of a frame may be displaced by: an outline that is learnt anew from frame to frame hides most of a change of its shape.
+    pub(crate) fn displacement_of_points(&self) -> f64 {
+        self.displacement.max(self.change_of_shape)
+    }
+
+    /// What poses may err by: an outline that is learnt anew takes a part of a change of its shape for a turn. Growth turns and shifts nothing.
+    pub(crate) fn displacement_of_poses(&self) -> f64 {
+        if self.family == Some(WrongFamily::Growth) { self.displacement } else { self.displacement_of_points() }
+    }
+
     /// The shape changes as well, which is said where nothing else is beyond doubt. A larger displacement that is known already counts.
     pub(crate) fn add_change_of_shape(&mut self, (displacement, is_beyond_doubt): ChangeOfShape) {
         if is_beyond_doubt || self.family.is_none() {
@@ -31,12 +48,8 @@ mod tests {
 
     #[test]
     fn a_change_of_shape_that_is_beyond_doubt_beside_something_else_counts_by_the_larger_displacement() {
-        let before = UnmodelledEstimate {
-            family: Some(WrongFamily::Growth),
-            is_beyond_doubt: false,
-            displacement: 0.01,
-            moments: UnmodelledMatrix::zeros(),
-        };
+        let nothing = UnmodelledEstimate::of_nothing(UnmodelledMatrix::zeros());
+        let before = UnmodelledEstimate { family: Some(WrongFamily::Growth), displacement: 0.01, ..nothing };
         let after = [(0.02, true), (0.005, true), (0.02, false)].map(|change| {
             let mut estimate = before;
             estimate.add_change_of_shape(change);
@@ -44,5 +57,16 @@ mod tests {
         });
         let (shape, growth) = (Some(WrongFamily::Shape), Some(WrongFamily::Growth));
         assert_eq!(after, [(shape, true, 0.02), (shape, true, 0.01), (growth, false, 0.01)]);
+    }
+
+    #[test]
+    fn points_are_displaced_by_a_change_of_shape_whatever_explains_it_and_poses_unless_it_is_growth() {
+        let displacements = [WrongFamily::Shear, WrongFamily::Growth].map(|family| {
+            let nothing = UnmodelledEstimate::of_nothing(UnmodelledMatrix::zeros());
+            let family = Some(family);
+            let estimate = UnmodelledEstimate { family, displacement: 0.001, change_of_shape: 0.09, ..nothing };
+            [estimate.displacement_of_points(), estimate.displacement_of_poses()]
+        });
+        assert_eq!(displacements, [[0.09, 0.09], [0.09, 0.001]]);
     }
 }

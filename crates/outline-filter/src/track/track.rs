@@ -220,7 +220,7 @@ impl Track {
     /// of shape. Noise and displacement are independent, so that their squares add up; all of the displacement is allowed for, since it may
     /// differ from frame to frame.
     fn widened(&self, largest: f64) -> f64 {
-        let displacement = self.unmodelled_estimate().displacement;
+        let displacement = self.unmodelled_estimate().displacement_of_points();
         largest.hypot(of_noise::LARGEST_RATIO * displacement).min(of_noise::LARGEST).max(largest)
     }
 

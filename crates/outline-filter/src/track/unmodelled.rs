@@ -75,10 +75,11 @@ impl Track {
     pub(super) fn unmodelled_estimate(&self) -> UnmodelledEstimate {
         let of_side = self.noise.rounding().of_side();
         let mut estimate = *self.family.estimate(self.belief.model, of_side);
-        if !estimate.is_beyond_doubt
-            && let Some(displacement) = self.change_of_shape()
-        {
-            estimate.add_change_of_shape((displacement, displacement > of_side));
+        if let Some(displacement) = self.change_of_shape() {
+            estimate.change_of_shape = displacement;
+            if !estimate.is_beyond_doubt {
+                estimate.add_change_of_shape((displacement, displacement > of_side));
+            }
         }
         // An outline that is hardly out of round changes by as much as that as it turns, which is not followed where it is not seen.
         let may_be_turn = estimate.family.is_some_and(|family| family != WrongFamily::Growth) && self.turn_is_unseen();
@@ -240,7 +241,7 @@ mod tests {
     #[test]
     fn points_may_scatter_more_where_outlines_do_what_the_motion_model_leaves_out() {
         let [sheared, plain] = [0.02, 0.0].map(|size| tracked(size, 1, (40, [1e-4; 2])));
-        let displacement = sheared.unmodelled_estimate().displacement;
+        let displacement = sheared.unmodelled_estimate().displacement_of_points();
         assert!(displacement > 0.5 * sheared.noise.sigma, "{displacement} {}", sheared.noise.sigma);
         for (track, is_more_accepted) in [(&sheared, true), (&plain, false)] {
             let largest = track.largest_noise();
@@ -254,7 +255,7 @@ mod tests {
     fn a_limit_that_allows_for_more_than_the_noise_is_widened_by_the_displacement_alone() {
         let track = tracked(0.02, 1, (40, [1e-4; 2]));
         let (radius, sigma) = (track.reference().radius, track.noise.sigma);
-        let displacement = track.unmodelled_estimate().displacement;
+        let displacement = track.unmodelled_estimate().displacement_of_points();
         let largest = 3.0 * LARGEST_RATIO * sigma;
         let widened = largest.hypot(LARGEST_RATIO * displacement);
         assert!(1.01 * widened < LARGEST, "{widened}");

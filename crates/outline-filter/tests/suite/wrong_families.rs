@@ -179,3 +179,32 @@ fn pixels_that_are_not_square_are_reckoned_with_from_the_first_frames_that_show_
         }
     }
 }
+
+/// How far the shape has changed since the map became known counts, though a small stretch of it is beyond doubt as well.
+#[test]
+fn angles_of_a_body_in_pixels_that_are_not_square_are_within_their_deviations_when_it_turns_on_after_a_rest() {
+    const TOO_WIDE: f64 = 1.14;
+    for seed in 0..5 {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut filter = MotionFilter::new(FilterSettings::default()).expect("settings");
+        let mut turn = 0.0;
+        for frame in 0..110_u8 {
+            turn += match frame {
+                0..44 => random.random_range(0.02..0.09),
+                44..70 => 0.0,
+                _ => random.random_range(0.06..0.12),
+            };
+            let outline = bent_outline(turn, 0.003, &mut random, |_, _| 0.0);
+            let seen = outline.points().map(|p| Point2::new(p.x / TOO_WIDE, p.y));
+            let outline = Outline::closed(seen.collect()).expect("an outline");
+            filter.step(f64::from(frame) / 15.0, &outline).expect("an outline");
+            if frame >= 60 {
+                let angle = filter.state().expect("a state").pose_parameters()[0];
+                let off = Rotation2::new(angle.value + turn).angle() / angle.standard_deviation;
+                let found = format!("seed {seed}, frame {frame}: {off} deviations of {}", angle.standard_deviation);
+                assert!(off.abs() < 2.0 && angle.standard_deviation < 0.2, "{found}");
+            }
+        }
+        assert!(filter.wrong_family().is_some(), "{seed}");
+    }
+}
