@@ -19,6 +19,17 @@ pub(super) struct ContourArea {
 }
 
 impl ContourArea {
+    const fn new(origin: Point2<f64>, start: usize) -> Self {
+        Self {
+            origin,
+            area: 0.0,
+            moment: Vector2::new(0.0, 0.0),
+            second: Matrix2::new(0.0, 0.0, 0.0, 0.0),
+            cells: 0,
+            least: start,
+        }
+    }
+
     /// Adds the triangle between the origin and the chord from one place to the next.
     fn add_chord(&mut self, from: &Point2<f64>, to: &Point2<f64>) {
         let (p, q) = (from - self.origin, to - self.origin);
@@ -43,6 +54,13 @@ impl ContourArea {
 /// The one that encloses more, the second where both do.
 fn larger(a: ContourArea, b: ContourArea) -> ContourArea {
     if a.area.abs() > b.area.abs() { a } else { b }
+}
+
+/// Centroid of the area within a closed polygon; `None` where it encloses none.
+pub(crate) fn centroid_within(polygon: &[Point2<f64>]) -> Option<Point2<f64>> {
+    let mut area = ContourArea::new(*polygon.first()?, 0);
+    polygon.iter().zip(polygon.iter().cycle().skip(1)).for_each(|(from, to)| area.add_chord(from, to));
+    area.centroid()
 }
 
 impl OutlineMap {
@@ -111,14 +129,7 @@ impl OutlineMap {
     /// The closed contour that a cell is of; `None` where it is of an open one.
     fn contour_from(&self, start: usize, offsets: KnownOffsets<'_>) -> Option<ContourArea> {
         let origin = self.cells.get(start)?.centre;
-        let mut contour = ContourArea {
-            origin,
-            area: 0.0,
-            moment: Vector2::zeros(),
-            second: Matrix2::zeros(),
-            cells: 0,
-            least: start,
-        };
+        let mut contour = ContourArea::new(origin, start);
         let (mut last, mut here) = (start, self.cells[start].neighbours[1]);
         loop {
             contour.add_chord(&self.known_place(last, offsets), &self.known_place(here, offsets));

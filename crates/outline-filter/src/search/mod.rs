@@ -1,4 +1,5 @@
 //! Global registration: an object that is known as a track looked for in a frame, without a guess of how it has moved.
+mod groupwise;
 mod landmarks;
 mod linearised;
 mod near_symmetry;
@@ -8,6 +9,7 @@ mod refinement;
 mod registration;
 mod symmetry;
 
+pub(crate) use groupwise::{Aligned, TimedPoints, aligned};
 pub(crate) use landmarks::Landmarks;
 pub(crate) use nearby::displacement_nearby;
 pub(crate) use refinement::RegisteredPose;

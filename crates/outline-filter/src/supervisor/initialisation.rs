@@ -253,10 +253,10 @@ impl MotionFilter {
 
 /// Cuts maps anew from the frames of a window.
 #[derive(Clone, Copy)]
-struct Remapper<'a> {
-    settings: &'a FilterSettings,
-    window: &'a InitialisationWindow,
-    turns: Turns,
+pub(super) struct Remapper<'a> {
+    pub(super) settings: &'a FilterSettings,
+    pub(super) window: &'a InitialisationWindow,
+    pub(super) turns: Turns,
 }
 
 impl Remapper<'_> {
@@ -284,7 +284,12 @@ impl Remapper<'_> {
     }
 
     /// One that stands at the first of some frames, after all of them.
-    fn taken(&self, remapped: Remapped, frames: &[PlacedFrame<'_>], buffers: &mut Frame) -> Option<Remapped> {
+    pub(super) fn taken(
+        &self,
+        remapped: Remapped,
+        frames: &[PlacedFrame<'_>],
+        buffers: &mut Frame,
+    ) -> Option<Remapped> {
         let Remapped { track, mut history, mut poses } = remapped;
         let track = track.replayed(frames, buffers, |track, frame, seconds, outline| {
             frame.load(outline, track.reference());

@@ -16,6 +16,7 @@ mod repeated_frames;
 mod search_budget;
 mod search_memory;
 mod settings;
+mod sparse_frames;
 mod starts;
 #[cfg(feature = "serde")]
 mod state_bytes;

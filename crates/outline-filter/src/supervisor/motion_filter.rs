@@ -216,6 +216,7 @@ impl MotionFilter {
             self.counts.add_rejected();
             self.fall_back(time, outline);
         }
+        self.keep_if_sparse(time, outline);
         (outcome.map(|outcome| outcome.measurement), rejection)
     }
 
@@ -231,6 +232,7 @@ impl MotionFilter {
         self.clock.last_frame /= unit;
         self.clock.of_track /= unit;
         self.window.divide_times(unit);
+        self.search_memory.sparse.divide_times(unit);
         self.track.as_mut().into_iter().for_each(|track| track.set_time_unit(unit));
     }
 

@@ -1,7 +1,7 @@
 //! What searches for the object go by.
 use freeform_curve_fit::Outline;
 
-use super::search_budget::SearchBudget;
+use super::{search_budget::SearchBudget, sparse_frames::SparseFrames};
 use crate::search::Landmarks;
 
 /// What searches for the object go by.
@@ -16,10 +16,18 @@ pub(super) struct SearchMemory {
     pub(super) budget: SearchBudget,
     /// Frames in which the object has not been found since the first, while it has been found in none; in units of time.
     pub(super) unfound: Vec<(f64, Outline)>,
+    /// The first frames of an outline of few points.
+    pub(super) sparse: SparseFrames,
 }
 
 impl Default for SearchMemory {
     fn default() -> Self {
-        Self { landmarks: None, symmetry: 1, budget: SearchBudget::default(), unfound: Vec::new() }
+        Self {
+            landmarks: None,
+            symmetry: 1,
+            budget: SearchBudget::default(),
+            unfound: Vec::new(),
+            sparse: SparseFrames::default(),
+        }
     }
 }

@@ -7,6 +7,7 @@ use super::{
     motion_change::MotionHistory,
     motion_filter::{MotionFilter, Phase},
     settings::FilterSettings,
+    sparse_frames::SparseFrames,
     turn_hypotheses::TurnHypotheses,
     window::InitialisationWindow,
 };
@@ -30,6 +31,7 @@ impl MotionFilter {
         self.clock.last_frame = time;
         (self.counts.rejected_in_a_row, self.counts.hidden_in_a_row) = (0, 0);
         self.search_memory.unfound.clear();
+        self.search_memory.sparse = SparseFrames::begin(model, time, outline);
         Ok(())
     }
 

@@ -10,7 +10,7 @@ use crate::track::{SavedCells, Track};
 use crate::tuning::symmetry::LARGEST_ORDER;
 
 /// Version of the format: another one for every change of what is saved.
-const VERSION: u32 = 31;
+const VERSION: u32 = 32;
 
 /// The format of the bytes.
 const FORMAT: StateFormat = state_format(*b"filt", "filter");
@@ -111,6 +111,9 @@ impl MotionFilter {
         }
         if !self.unfound_are_valid() {
             return inconsistent("frames without the object");
+        }
+        if !self.search_memory.sparse.is_valid(self.clock.last_frame) {
+            return inconsistent("first frames of few points");
         }
         Ok(())
     }

@@ -13,4 +13,4 @@ pub(crate) use frame::{deviations, lattice, likelihood, measurement, noise, upda
 pub(crate) use motion::saved_state;
 pub(crate) use motion::{batch, dynamics, family, innovations, motion_change, statement, steady_change, supervisor};
 pub(crate) use outline::{contour, map, null_space, redrawing, shape_change, shape_noise, symmetry, usual_agreement};
-pub(crate) use search::{registration, remapping, turn_hypotheses, turn_profile};
+pub(crate) use search::{groupwise, registration, remapping, turn_hypotheses, turn_profile};

@@ -34,6 +34,7 @@ mod recording;
 #[cfg(feature = "serde")]
 mod saved_state;
 mod seen_aslant;
+mod sparse_outlines;
 mod standing_edges;
 mod thrown_bodies;
 mod uneven_motion;
