@@ -55,6 +55,22 @@ impl Input {
         }
     }
 
+    /// As [`open`](Self::open), of objects whose motion is looked for with such options.
+    pub(crate) fn open_to_track(
+        paths: &[PathBuf],
+        (options, of_pictures): (&TrackOptions, &PictureOptions),
+        waiting: Waiting,
+        verbosity: Verbosity,
+    ) -> Result<Self, Failure> {
+        let mut input = Self::open(paths, of_pictures, waiting, verbosity)?;
+        if let Source::Pictures(pictures) = &mut input.source
+            && options.allows_for_tilt()
+        {
+            pictures.allow_for_tilt();
+        }
+        Ok(input)
+    }
+
     /// Opens CSV or pictures; standard input where the path is `-`. Names tell them apart, or what they begin with. A terminal shows
     /// that pictures are looked at, unless it is to be quiet.
     pub(crate) fn open(

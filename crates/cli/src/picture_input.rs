@@ -39,6 +39,15 @@ const PICTURES_OF_CORE: usize = 2;
 /// Frames per second of pictures that do not tell.
 pub(crate) const ASSUMED_RATE: u32 = 30;
 
+/// What an object does to the shape that it has in a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum ShapeInPicture {
+    /// It keeps it as it turns, if pixels are what they are taken to be.
+    Kept,
+    /// It need not: the camera is known to look at it from aside.
+    SeenFromAside,
+}
+
 /// The outlines in pictures, one object after the other.
 pub(crate) struct PictureInput {
     /// What was named for input.
@@ -53,6 +62,7 @@ pub(crate) struct PictureInput {
     /// Whether nothing was given or chosen, as a stream is not to be waited for.
     is_traced_unseen: bool,
     outline_uncertainty: Option<OutlineUncertainty>,
+    shape: ShapeInPicture,
     /// Objects of the present picture that have not been handed on.
     waiting: VecDeque<Item>,
     /// Pictures read.
@@ -116,6 +126,7 @@ impl PictureInput {
             missed: None,
             is_traced_unseen: false,
             outline_uncertainty: Some(OutlineUncertainty::MaskPixel(settings.trace.pixel())),
+            shape: ShapeInPicture::Kept,
             waiting: VecDeque::new(),
             frames: 0,
         })
@@ -184,6 +195,7 @@ impl PictureInput {
             missed: None,
             is_traced_unseen: false,
             outline_uncertainty,
+            shape: ShapeInPicture::Kept,
             waiting: VecDeque::new(),
             frames: 0,
         })
@@ -192,6 +204,11 @@ impl PictureInput {
     /// The options, with what was chosen.
     pub(crate) fn options(&self) -> &PictureOptions {
         &self.options
+    }
+
+    /// Takes it to be known that the camera looks at the objects from aside, so that what their shapes do says nothing of the pixels.
+    pub(crate) fn allow_for_tilt(&mut self) {
+        self.shape = ShapeInPicture::SeenFromAside;
     }
 
     /// How far the outlines may lie off; `None` where nothing tells.

@@ -233,6 +233,11 @@ impl TrackOptions {
         self.rectify.as_ref().map(|given| given.map)
     }
 
+    /// Whether they say how the camera looks at the plane that the objects move in.
+    pub(crate) fn allows_for_tilt(&self) -> bool {
+        self.rectify.is_some() || self.motion == MotionChoice::Plane
+    }
+
     /// All that is read with these options: that of `pictures`, and the file of that map, where it is one.
     pub(crate) fn files_read(&self, pictures: &PictureOptions, inputs: &[PathBuf]) -> Vec<PathBuf> {
         let of_map = self.rectify.as_ref().and_then(|given| given.file.clone());

@@ -37,7 +37,8 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     // Options are refused before an input is waited for.
     let mut tracker = tracker(args, None)?;
     let verbosity = Verbosity::of_flag(args.quiet);
-    let mut input = Input::open(&args.inputs, &args.pictures, Waiting::UntilInterrupted, verbosity)?;
+    let of_objects = (&args.options, &args.pictures);
+    let mut input = Input::open_to_track(&args.inputs, of_objects, Waiting::UntilInterrupted, verbosity)?;
     if let Some(uncertainty) = input.pictures().and_then(PictureInput::outline_uncertainty) {
         tracker = self::tracker(args, Some(uncertainty))?;
     }

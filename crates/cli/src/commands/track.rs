@@ -24,7 +24,8 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     let tracker = |settings| Tracker::new(settings).map(|tracker| tracker.with_known_outlines(shown));
     let mut following = tracker(args.options.tracker_settings()).map_err(Failure::unusable)?;
     let verbosity = Verbosity::of_flag(args.quiet);
-    let mut input = Input::open(&args.inputs, &args.pictures, Waiting::None, verbosity)?;
+    let of_objects = (&args.options, &args.pictures);
+    let mut input = Input::open_to_track(&args.inputs, of_objects, Waiting::None, verbosity)?;
     if let Some(error) = input.pictures().and_then(PictureInput::outline_uncertainty) {
         let settings = args.options.tracker_settings_for(error);
         following = tracker(settings).map_err(Failure::unusable)?;

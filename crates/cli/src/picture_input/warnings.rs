@@ -1,7 +1,7 @@
 //! What may be wrong with how pictures are read and traced.
 use freeform_motion::outline_io::{AfterContact, OriginWarning, OriginWarnings};
 
-use super::{ASSUMED_RATE, PictureInput};
+use super::{ASSUMED_RATE, PictureInput, ShapeInPicture};
 use crate::label_choice::label_warnings;
 
 /// Objects that are told to be perhaps others.
@@ -71,7 +71,7 @@ impl PictureInput {
 
     /// That the pixels have another aspect, as far as the pictures read so far say, with the code.
     pub(crate) fn warning_of_aspect(&self) -> Option<(OriginWarning, String)> {
-        let aspect = self.traced.better_pixel_aspect()?;
+        let aspect = self.traced.better_pixel_aspect().filter(|_| self.shape == ShapeInPicture::Kept)?;
         let symptom = "the object keeps its shape as it turns only with pixels of another aspect";
         let message = format!(
             "{symptom}: give --pixel-aspect {aspect:.2} (width over height), or the angles are wrong; or the camera looks at it from aside: --rectify"

@@ -43,3 +43,16 @@ fn pixels_that_are_not_as_wide_as_high_are_told_with_the_aspect_and_with_that_th
     // Rows run downwards, so that the turn is positive.
     assert!((value - 1.0).abs() < 4.0 * std && std < 0.05, "{value} {std}");
 }
+
+/// Obeying the warning would stretch the plane that the map has made right.
+#[test]
+fn nothing_is_said_of_the_pixels_where_a_map_to_the_plane_is_given() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let pictures = wide_pixels(folder.path());
+    let output = run(&format!("identify {pictures} --light --fps 20 --json --rectify {ASPECT},0,0,0,1,0,0,0,1"), "");
+    let (found, told) = (json(&stdout(&output)), stderr(&output));
+    assert!(!told.contains("pixel_aspect") && found["warnings"].is_null(), "{told}");
+    let omega = &found["objects"][0]["parameters"]["omega"];
+    let [value, std] = ["value", "std"].map(|field| omega[field].as_f64().expect("a number"));
+    assert!((value - 1.0).abs() < 4.0 * std && std < 0.05, "{value} {std}");
+}
