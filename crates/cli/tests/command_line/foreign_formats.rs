@@ -1,7 +1,7 @@
 //! Files that are neither outlines nor pictures that are read: what they are, and what to do, on one line.
 use image::GrayImage;
 
-use crate::support::{file, run, stderr, stdout};
+use crate::support::{file, json, run, stderr, stdout, succeed};
 
 #[test]
 fn files_of_other_kinds_are_named_with_what_to_do() {
@@ -68,7 +68,10 @@ fn polygons_by_their_corners_alone_are_told_why_nothing_is_stated() {
     let quadrilateral = vec![(0.0, 0.0), (3.0, 0.2), (2.5, 2.0), (0.4, 1.5)];
     let star: Vec<_> =
         (0..10_u8).map(|i| (f64::from(i) / 10.0 * std::f64::consts::TAU, 1.0 + 0.3 * f64::from(i % 2))).collect();
-    let star: Vec<_> = star.into_iter().map(|(angle, radius)| (radius * angle.cos(), 0.7 * angle.sin())).collect();
+    let squashed = |by: f64| -> Vec<_> {
+        star.iter().map(|(angle, radius)| (radius * angle.cos(), by * radius * angle.sin())).collect()
+    };
+    let (star, regular) = (squashed(0.7), squashed(1.0));
     let rows = |corners: &[(f64, f64)], per_side: u32| -> String {
         let row = |frame: u32, (x, y): (f64, f64)| {
             let (sin, cos) = (0.1 * f64::from(frame)).sin_cos();
@@ -88,8 +91,15 @@ fn polygons_by_their_corners_alone_are_told_why_nothing_is_stated() {
     let told = |corners: &[(f64, f64)], per_side: u32| stderr(&run("identify -", &rows(corners, per_side)));
     let of_four = told(&quadrilateral, 1);
     assert!(of_four.contains("along the sides of a polygon too") && of_four.lines().count() == 1, "{of_four}");
-    let of_ten = told(&star, 1);
+    // Which of its points of a star is where nobody knows: another turn explains the corners as well.
+    let of_ten = told(&regular, 1);
     assert!(of_ten.contains("every outline has 10 points") && of_ten.contains("along the sides too"), "{of_ten}");
+    // Of another with corners all its own the frames are aligned together.
+    assert!(!told(&star, 1).contains("along the sides"));
+    let found = json(&succeed("identify - --json", &rows(&star, 1)));
+    let omega = &found["objects"][0]["parameters"]["omega"];
+    let [value, std] = ["value", "std"].map(|field| omega[field].as_f64().expect("a number"));
+    assert!((value + 1.0).abs() < 3.0 * std && std < 0.1, "{value} {std}");
     // Points along the sides of a circle would not show its turn either.
     let circle: Vec<_> = (0..20_u8).map(|i| (f64::from(i) / 20.0 * std::f64::consts::TAU).sin_cos()).collect();
     for along in [told(&quadrilateral, 20), told(&star, 10), told(&circle, 1)] {

@@ -33,6 +33,15 @@ pub(crate) enum Counted {
     ByDeviation,
 }
 
+/// Where frames that have been compared show the object. In one place errors that stay there, of pixels or of the ground beside an edge, are the same in
+/// all of them, and pass for the outline.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+enum SeenIn {
+    OnePlace,
+    SeveralPlaces,
+}
+
 /// Deviation of the noise on the points, normalised, and what goes with it.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -45,6 +54,7 @@ pub(crate) struct NoiseModel {
     rounding: Rounding,
     pub(crate) tolerance: Tolerance,
     pub(crate) counted: Counted,
+    seen_in: SeenIn,
     level: NoiseLevel,
     correlation: Correlation,
     /// Of each cell.
@@ -121,6 +131,10 @@ struct NoiseLevel {
     count: usize,
 }
 
+impl NoiseLevel {
+    const NONE: Self = Self { frames: [0.0; tuning::FRAMES], count: 0 };
+}
+
 impl NoiseModel {
     /// Of contours with noise of deviation `sigma`, cut into cells with a sagitta and a spacing.
     pub(crate) fn new(sigma: f64) -> Self {
@@ -131,7 +145,8 @@ impl NoiseModel {
             rounding: Rounding::NONE,
             tolerance: Tolerance::Known,
             counted: Counted::Alike,
-            level: NoiseLevel { frames: [0.0; tuning::FRAMES], count: 0 },
+            seen_in: SeenIn::OnePlace,
+            level: NoiseLevel::NONE,
             correlation: Correlation::NONE,
             inflation: Vec::new(),
         }
@@ -157,7 +172,20 @@ impl NoiseModel {
     /// Adopts what frames have shown so far from another model.
     pub(crate) fn adopt_level_of(&mut self, other: &Self) {
         (self.level, self.correlation, self.tolerance) = (other.level, other.correlation, other.tolerance);
-        self.counted = other.counted;
+        (self.counted, self.seen_in) = (other.counted, other.seen_in);
+    }
+
+    /// Whether several frames have been compared, and show the object in one place.
+    fn is_of_rest(&self) -> bool {
+        self.seen_in == SeenIn::OnePlace && self.weight > tuning::RESTED
+    }
+
+    /// Takes the object to be seen in another place than where it was. What frames say that show it at rest counts for one then, as they are alike.
+    pub(crate) fn see_elsewhere(&mut self) {
+        if self.is_of_rest() {
+            (self.weight, self.level) = (1.0, NoiseLevel::NONE);
+        }
+        self.seen_in = SeenIn::SeveralPlaces;
     }
 
     /// Makes room for so many cells.
@@ -221,8 +249,8 @@ impl NoiseModel {
             Tolerance::Relaxed => tuning::LARGEST_AT_FIRST,
             Tolerance::Known => 0.0,
         };
-        let most =
-            typical.map_or(at_first, |typical| (tuning::LARGEST_RATIO * typical.max(known)).min(tuning::LARGEST));
+        let of_frames = typical.map(|typical| (tuning::LARGEST_RATIO * typical.max(known)).min(tuning::LARGEST));
+        let most = of_frames.map_or(at_first, |most| if self.is_of_rest() { most.max(at_first) } else { most });
         most.max(tuning::LARGEST_RATIO * known).max(self.rounding.of_step().min(tuning::LARGEST))
     }
 
@@ -324,6 +352,29 @@ mod tests {
         assert!((tolerated(Rounding::of_mask(0.02, extent)) / (0.02 * (1.0_f64 / 6.0).sqrt()) - 1.0).abs() < 0.01);
         let interpolated = Rounding::on_lattice(0.02, PlaceOnLattice::Lines, 0.0, extent);
         assert!(tolerated(interpolated) < 0.02 * 0.289);
+    }
+
+    #[test]
+    fn an_object_seen_at_rest_may_scatter_more_where_it_is_looked_for_and_its_noise_is_learnt_anew_once_it_moves() {
+        let mut noise = NoiseModel::new(1e-3);
+        for _ in 0..20 {
+            noise.update(1e-3, 1.0);
+            noise.record_spread(1e-3);
+        }
+        let tolerates = |noise: &NoiseModel, expected: [f64; 2]| {
+            let found = [Tolerance::Known, Tolerance::Relaxed].map(|tolerance| noise.tolerated_where(tolerance));
+            found.iter().zip(expected).all(|(found, expected)| (found / expected - 1.0).abs() < 1e-9)
+        };
+        assert!(tolerates(&noise, [tuning::LARGEST_RATIO * 1e-3, tuning::LARGEST_AT_FIRST]));
+        noise.see_elsewhere();
+        noise.update(3e-3, 1.0);
+        noise.record_spread(3e-3);
+        assert!((noise.sigma / 2e-3 - 1.0).abs() < 1e-9 && tolerates(&noise, [tuning::LARGEST_RATIO * 3e-3; 2]));
+        // Only once.
+        (0..20).for_each(|_| noise.update(2e-3, 1.0));
+        noise.see_elsewhere();
+        noise.update(4e-3, 1.0);
+        assert!(noise.sigma < 2.1e-3, "{}", noise.sigma);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //!
 //! The chords between a dozen points of one frame are no outline that the next frame could be compared with: what they cut off is more than a turn
 //! moves. Points of several frames tell the outline, once the frames are aligned; and they are aligned best where they make the smoothest contour.
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use freeform_riccati::map_point;
 use nalgebra::{Matrix3, Matrix3x2, Point2, Rotation2, Vector2, Vector3};
@@ -38,17 +38,26 @@ struct Motion {
     path: Path,
 }
 
-/// Rates of a motion that are refined: of the spin, and along both axes of velocity and acceleration.
-const RATES: usize = 5;
+/// Rates of a motion that are refined, along an axis.
+#[derive(Debug, Clone, Copy)]
+enum Rate {
+    Spin,
+    Velocity(usize),
+    Acceleration(usize),
+}
+
+const RATES: [Rate; 5] =
+    [Rate::Spin, Rate::Velocity(0), Rate::Velocity(1), Rate::Acceleration(0), Rate::Acceleration(1)];
 
 impl Motion {
-    /// With another rate, by a step that moves points of a body of such a radius by as many radians as it turns; `None` where the path does not have it.
-    fn stepped(mut self, rate: usize, step: f64, (radius, span): (f64, f64)) -> Option<Self> {
+    /// With another rate, by a step that moves points of a body of such a radius by as much as it turns them, at the ends of the time for an acceleration;
+    /// `None` where the path does not have it.
+    fn stepped(mut self, rate: Rate, step: f64, (radius, span): (f64, f64)) -> Option<Self> {
         match (rate, &mut self.path) {
-            (0, _) => self.spin += step,
-            (1 | 2, _) => self.velocity[rate - 1] += step * radius,
-            (_, Path::Bent(acceleration)) => acceleration[rate - 3] += 4.0 * step * radius / span,
-            (_, Path::Arc) => return None,
+            (Rate::Spin, _) => self.spin += step,
+            (Rate::Velocity(axis), _) => self.velocity[axis] += step * radius,
+            (Rate::Acceleration(axis), Path::Bent(acceleration)) => acceleration[axis] += 4.0 * step * radius / span,
+            (Rate::Acceleration(_), Path::Arc) => return None,
         }
         Some(self)
     }
@@ -88,11 +97,12 @@ struct Place {
 }
 
 /// Frames of a closed outline that is seen as a whole, aligned by the rigid motion that makes the smoothest contour of their points. `None` where no turn
-/// is clearly better than all others, as of a circle, and where the contour runs to and fro as seen from the centroid.
+/// is clearly better than all others, as of a circle, or of a symmetric body. A contour that runs to and fro as seen from the centroid makes no smooth
+/// one, so that hardly any turn is.
 pub(crate) fn aligned(frames: &[TimedPoints]) -> Option<Aligned> {
     let mut group = Group::new(frames)?;
     let (best, gain) = group.best_turn()?;
-    if gain <= tuning::BETTER {
+    if gain <= tuning::BETTER || group.is_symmetric(&best) {
         return None;
     }
     let [(arc, of_arc), (bent, of_bent)] = [Path::Arc, best.path].map(|path| group.refined(Motion { path, ..best }));
@@ -122,10 +132,31 @@ impl<'a> Group<'a> {
         let of_turn = |step: i32| Motion { spin: f64::from(step) * tuning::STEP / span, velocity, path };
         let tried: Vec<(Motion, f64)> =
             (-steps..=steps).map(of_turn).map(|motion| (motion, self.scatter(&motion))).collect();
-        let (best, scatter) = *tried.iter().min_by(|(_, a), (_, b)| a.total_cmp(b))?;
+        let finite = tried.iter().filter(|(_, scatter)| scatter.is_finite());
+        let (best, scatter) = *finite.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
         let others = tried.iter().filter(|(other, _)| (other.spin - best.spin).abs() * span > tuning::ANOTHER);
         let of_others = others.map(|(_, scatter)| *scatter).reduce(f64::min)?;
-        (scatter > 0.0).then(|| (best, 0.5 * self.around.len() as f64 * (of_others / scatter).ln()))
+        // Without noise the scatter may be none, and the gain is infinite.
+        (of_others > 0.0).then(|| (best, 0.5 * self.around.len() as f64 * (of_others / scatter).ln()))
+    }
+
+    /// Whether the contour that a motion makes is about the same after a part of a whole turn: turns faster by that from frame to frame explain it as well.
+    fn is_symmetric(&mut self, motion: &Motion) -> bool {
+        let scatter = self.scatter(motion);
+        let count = self.around.len();
+        let distance_at = |angle: f64| {
+            let angle = (angle + PI).rem_euclid(TAU) - PI;
+            let next = self.around.partition_point(|place| place.angle < angle);
+            let [before, after] = [self.around[(next + count - 1) % count], self.around[next % count]];
+            let [along, whole] = [angle - before.angle, after.angle - before.angle].map(|part| part.rem_euclid(TAU));
+            let share = if whole > 0.0 { along / whole } else { 0.5 };
+            before.distance + share * (after.distance - before.distance)
+        };
+        (2..=tuning::LARGEST_ORDER).any(|order| {
+            let differs = |place: &Place| (place.distance - distance_at(place.angle + TAU / order as f64)).powi(2);
+            let mean = self.around.iter().map(differs).sum::<f64>() / count as f64;
+            mean < tuning::SYMMETRIC * scatter
+        })
     }
 
     /// The velocity in the middle of the time, and the acceleration, by which the centroids move, in the least-squares sense.
@@ -158,8 +189,8 @@ impl<'a> Group<'a> {
         self.around.sort_unstable_by(|a, b| a.angle.total_cmp(&b.angle));
     }
 
-    /// Mean square of what points are farther out than a line through their neighbours has it, over the angle, in variances of that by points of unit
-    /// noise. Distances from a chord would fall where two neighbours are nearly one, as its direction is noise then.
+    /// How much farther out points are than a line through their neighbours has it, over the angle: the mean of the squares, each divided by the variance
+    /// that unit noise of the points gives it. Distances from a chord would fall where two neighbours are nearly one, as its direction is noise then.
     fn scatter(&mut self, motion: &Motion) -> f64 {
         self.merge(motion);
         let (count, far) = (self.around.len(), (tuning::FAR * self.radius).powi(2));
@@ -185,7 +216,7 @@ impl<'a> Group<'a> {
             // No more than leads from one turn that is tried to the next.
             for _ in 0..4 {
                 let before = least;
-                for (rate, step) in (0..RATES).flat_map(|rate| [(rate, size), (rate, -size)]) {
+                for (rate, step) in RATES.iter().flat_map(|rate| [(*rate, size), (*rate, -size)]) {
                     let Some(other) = motion.stepped(rate, step, (self.radius, span)) else { continue };
                     let scatter = self.scatter(&other);
                     if scatter < least {
@@ -265,6 +296,28 @@ mod tests {
             let mean = (contour.iter().map(|p| distance(p).powi(2)).sum::<f64>() / 96.0).sqrt();
             assert!(mean < 4.0 * NOISE, "{spin}: {mean}");
         }
+    }
+
+    #[test]
+    fn frames_of_a_symmetric_body_are_not_aligned_as_a_faster_turn_does_it_as_well() {
+        for order in [2, 3, 4, 6] {
+            let lobes = [(f64::from(order), [0.15, 0.0])];
+            for seed in 0..4 {
+                let spin = 30.0 * std::f64::consts::TAU / f64::from(order) - 6.0;
+                let (frames, _) = frames_of((8, 12), &lobes, (spin, Vector2::new(0.7, -0.4)), seed);
+                assert!(aligned(&frames).is_none(), "{order} {seed}");
+            }
+        }
+    }
+
+    #[test]
+    fn outlines_that_repeat_each_other_to_the_last_digit_are_aligned_at_rest() {
+        let lobes = [(2.0, [0.1, 0.05]), (3.0, [0.0, 0.1])];
+        let (mut frames, _) = frames_of((8, 12), &lobes, (0.0, Vector2::zeros()), 1);
+        let first = frames[0].1.clone();
+        frames.iter_mut().for_each(|(_, points)| points.clone_from(&first));
+        let aligned = aligned(&frames).expect("a clear turn");
+        assert!(aligned.poses.iter().all(|pose| (pose - Matrix3::identity()).amax() < 1e-9));
     }
 
     #[test]

@@ -40,4 +40,10 @@ impl Counts {
     pub(super) fn begin_track(&mut self) {
         (self.accepted_by_track, self.rejected_by_track) = (1, 0);
     }
+
+    /// A new track was begun with so many frames, all of which it has taken.
+    pub(super) fn begin_with(&mut self, frames: usize) {
+        (self.accepted_by_track, self.rejected_by_track) = (frames, 0);
+        (self.rejected_in_a_row, self.hidden_in_a_row, self.fruitless_starts) = (0, 0, 0);
+    }
 }

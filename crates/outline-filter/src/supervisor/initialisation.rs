@@ -5,16 +5,14 @@ use nalgebra::Affine2;
 use super::{
     motion_change::MotionHistory,
     motion_filter::{MotionFilter, Phase},
-    settings::FilterSettings,
+    remapper::Remapper,
     taken_ahead::{Hypothesis, TakenAhead},
-    tracking::{Turns, advance_again},
-    window::{Ahead, Draft, Due, InitialisationWindow, Measured, Placed, Remapped, Remapping},
+    window::{Ahead, Draft, Due, Measured, Placed, Remapped, Remapping},
 };
 use crate::{
     map::{CellsInCommon, TurnEvent, TurnEvidence},
-    measurement::Frame,
     search::Landmarks,
-    track::{PlacedFrame, Track},
+    track::Track,
     tuning::{remapping as tuning, supervisor::MOST_BEGUN_IN_VAIN},
 };
 
@@ -251,56 +249,6 @@ impl MotionFilter {
     }
 }
 
-/// Cuts maps anew from the frames of a window.
-#[derive(Clone, Copy)]
-pub(super) struct Remapper<'a> {
-    pub(super) settings: &'a FilterSettings,
-    pub(super) window: &'a InitialisationWindow,
-    pub(super) turns: Turns,
-}
-
-impl Remapper<'_> {
-    /// A rival of a track that was begun anew, at the first frame on the same cells: each of its own would be as many times the work, and a finer
-    /// one would win by that alone. Where they have not begun alike it has cells of its own all the same.
-    fn on_map_of(
-        &self,
-        begun: &Track,
-        (rival, in_common): (&Track, CellsInCommon),
-        buffers: &mut Frame,
-    ) -> Option<Remapped> {
-        let frames = self.window.by_motion(rival);
-        let begun = begun.with_motion_of(rival).or_else(|| {
-            let (mut begun, _) = rival.recut(&frames, (1, in_common), buffers)?;
-            begun.begin_as(rival, frames.first()?.outline, buffers);
-            Some(begun)
-        })?;
-        Some(Remapped::at_first(begun))
-    }
-
-    /// One after the next of the frames kept.
-    fn taken_next(&self, remapped: Remapped, frames: &[PlacedFrame<'_>], buffers: &mut Frame) -> Option<Remapped> {
-        let next = remapped.frames_taken();
-        self.taken(remapped, frames.get(next.checked_sub(1)?..=next)?, buffers)
-    }
-
-    /// One that stands at the first of some frames, after all of them.
-    pub(super) fn taken(
-        &self,
-        remapped: Remapped,
-        frames: &[PlacedFrame<'_>],
-        buffers: &mut Frame,
-    ) -> Option<Remapped> {
-        let Remapped { track, mut history, mut poses } = remapped;
-        let track = track.replayed(frames, buffers, |track, frame, seconds, outline| {
-            frame.load(outline, track.reference());
-            let outcome = advance_again(self.settings, (track, frame), &mut history, seconds, self.turns);
-            poses.push(*track.body_pose());
-            outcome.is_some_and(|outcome| outcome.is_accepted())
-        })?;
-        Some(Remapped { track, history, poses })
-    }
-}
-
 /// Frames kept that are taken on new cells in one step, by the number of hypotheses which all take the frame of that step besides.
 pub(super) fn frames_at_once(hypotheses: usize) -> usize {
     tuning::MEASURED_AT_ONCE.saturating_sub(hypotheses).max(hypotheses + tuning::FRAMES_OF_BEGINNING)
@@ -317,7 +265,10 @@ mod tests {
     use freeform_riccati::MotionModel;
 
     use super::*;
-    use crate::drawn_curves::{outline, polar, turning};
+    use crate::{
+        drawn_curves::{outline, polar, turning},
+        supervisor::settings::FilterSettings,
+    };
 
     #[test]
     fn frames_are_not_kept_for_ever_where_the_turn_stays_unknown() {

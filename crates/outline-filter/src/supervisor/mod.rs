@@ -12,6 +12,7 @@ mod initialisation;
 mod motion_change;
 mod motion_filter;
 mod passing_over;
+mod remapper;
 mod repeated_frames;
 mod search_budget;
 mod search_memory;

@@ -1,14 +1,18 @@
 //! The first frames of outlines of few points each, which are aligned together once there are enough of them.
 use freeform_curve_fit::Outline;
+#[cfg(feature = "serde")]
+use freeform_estimate::StateFormat;
 use freeform_riccati::MotionModel;
 
 use super::{
-    initialisation::Remapper,
     motion_filter::{MotionFilter, Phase},
+    remapper::Remapper,
+    tracking::Turns,
+    turn_hypotheses::TurnHypotheses,
     window::{InitialisationWindow, Remapped},
 };
 use crate::{
-    map::{CellsInCommon, TurnEvent},
+    map::{CellsInCommon, TurnEvent, TurnEvidence},
     measurement::Frame,
     search::{Aligned, Landmarks, TimedPoints, aligned},
     track::Track,
@@ -21,13 +25,15 @@ use crate::{
 pub(super) struct SparseFrames {
     /// In units of time.
     frames: Vec<(f64, Outline)>,
+    /// The [segment](MotionFilter::segment) that they began.
+    segment: usize,
 }
 
 impl SparseFrames {
     /// Begins with the first frame of a track.
-    pub(super) fn begin(model: MotionModel, time: f64, outline: &Outline) -> Self {
-        let is_sparse = model <= MotionModel::Similarity && is_sparse(outline);
-        Self { frames: if is_sparse { vec![(time, outline.clone())] } else { Vec::new() } }
+    pub(super) fn begin(model: MotionModel, segment: usize, (time, outline): (f64, &Outline)) -> Self {
+        let frames = if may_align(model, outline) { vec![(time, outline.clone())] } else { Vec::new() };
+        Self { frames, segment }
     }
 
     /// Takes another unit of time.
@@ -36,9 +42,9 @@ impl SparseFrames {
     }
 
     /// Keeps a frame that follows the others, if these are kept; whether they are to be aligned now.
-    fn keep(&mut self, time: f64, outline: &Outline) -> bool {
+    fn keep(&mut self, model: MotionModel, time: f64, outline: &Outline) -> bool {
         let Some((last, _)) = self.frames.last() else { return false };
-        if !is_sparse(outline) {
+        if !may_align(model, outline) {
             self.frames.clear();
         } else if time > *last {
             self.frames.push((time, outline.clone()));
@@ -47,34 +53,41 @@ impl SparseFrames {
     }
 }
 
-/// Whether an outline is seen as a whole by few points.
-fn is_sparse(outline: &Outline) -> bool {
-    matches!(outline, Outline::Closed(_)) && outline.point_count() < tuning::SPARSE && outline.pieces().count() == 1
+/// Whether an outline is seen as a whole by few points, and moves as a rigid one does over some frames.
+fn may_align(model: MotionModel, outline: &Outline) -> bool {
+    let is_whole = matches!(outline, Outline::Closed(_)) && outline.pieces().count() == 1;
+    model <= MotionModel::Similarity && is_whole && outline.point_count() < tuning::SPARSE
 }
 
 impl MotionFilter {
     /// Keeps one of the first frames of an outline of few points, and aligns them together where a map begun with the first of them alone does not show
-    /// the turn, or has not found the object in some.
+    /// the turn, or has not found the object in some. What was said of a frame stays said.
     pub(super) fn keep_if_sparse(&mut self, time: f64, outline: &Outline) {
-        if !self.search_memory.sparse.keep(time, outline) {
+        if !self.search_memory.sparse.keep(self.settings.model, time, outline) {
             return;
         }
-        let all = std::mem::take(&mut self.search_memory.sparse.frames);
+        let all = std::mem::take(&mut self.search_memory.sparse);
+        let evidence = self.track.as_ref().map(Track::turn_evidence);
         let is_unseen = self.track.as_ref().is_none_or(Track::turn_is_unseen);
-        if !is_unseen && self.counts.rejected_by_track == 0 {
+        if evidence == Some(TurnEvidence::Refuted) || !is_unseen && self.counts.rejected_by_track == 0 {
             return;
         }
-        if self.begin_with_aligned(&all).is_none() && all.len() < tuning::OCCASIONS[tuning::OCCASIONS.len() - 1] {
-            self.search_memory.sparse.frames = all;
+        let count = all.frames.len();
+        if self.begin_with_aligned(&all).is_none() && count < tuning::OCCASIONS[tuning::OCCASIONS.len() - 1] {
+            self.search_memory.sparse = all;
         }
     }
 
     /// Begins anew with frames that are aligned together, the last of them being that which was processed last. `None`, and nothing changes, where they
     /// are not, or do not fit the outline that they make.
-    fn begin_with_aligned(&mut self, all: &[(f64, Outline)]) -> Option<()> {
+    fn begin_with_aligned(&mut self, SparseFrames { frames: all, segment }: &SparseFrames) -> Option<()> {
         let (first_time, first) = all.first()?;
         let (model, frame) = (self.settings.model, &mut self.frame);
         let begun = Track::begin(model, first, self.settings.mask_pixel, frame)?;
+        // Errors of points that are rounded stay with the pixels, and would make the smoothest contour where nothing turns.
+        if begun.noise().rounding().pixel() > 0.0 {
+            return None;
+        }
         let timed = |(time, outline): &(f64, Outline)| timed_points(&begun, frame, *time, outline);
         let timed: Vec<TimedPoints> = all.iter().map(timed).collect();
         let Aligned { poses, contour } = aligned(&timed)?;
@@ -87,7 +100,7 @@ impl MotionFilter {
         for (time, outline) in &all[1..] {
             window.keep(*time, outline, &track);
         }
-        let remapper = Remapper { settings: &self.settings, window: &window, turns: self.turns_of_kept() };
+        let remapper = Remapper { settings: &self.settings, window: &window, turns: Turns::One };
         let frames = window.by_motion(&track);
         let Remapped { mut track, history, poses } =
             remapper.taken(Remapped::at_first(track), &frames, &mut self.frame)?;
@@ -95,8 +108,13 @@ impl MotionFilter {
         drop(frames);
         window.set_poses(poses);
         self.window = window;
-        self.turn_hypotheses = Default::default();
+        self.turn_hypotheses = TurnHypotheses::default();
         self.search_memory.landmarks = Landmarks::of(first);
+        self.search_memory.symmetry = 1;
+        self.search_memory.unfound.clear();
+        self.counts.begin_with(all.len());
+        // Poses go back to the first of these frames again.
+        self.counts.begun_with_turn += usize::from(self.segment() != *segment);
         self.motion_changed = history.is_changing();
         let time = self.clock.last_frame;
         self.replace(track, history, time, Phase::Tracking);
@@ -112,11 +130,34 @@ fn timed_points(track: &Track, frame: &mut Frame, time: f64, outline: &Outline) 
 
 #[cfg(feature = "serde")]
 impl SparseFrames {
-    /// Whether they are no more than are kept, and came one after the other, after `last` none.
-    pub(super) fn is_valid(&self, last: f64) -> bool {
+    /// Whether they are such frames of a model, no more than are kept, and came one after the other up to the `last` of all.
+    pub(super) fn is_valid(&self, model: MotionModel, last: f64) -> bool {
         let most = tuning::OCCASIONS[tuning::OCCASIONS.len() - 1];
         self.frames.len() < most
-            && self.frames.iter().all(|(time, outline)| time.is_finite() && *time <= last && is_sparse(outline))
+            && self.segment < StateFormat::MOST_COUNTED
+            && self.frames.iter().all(|(time, outline)| time.is_finite() && *time <= last && may_align(model, outline))
             && self.frames.is_sorted_by(|(a, _), (b, _)| a < b)
+    }
+}
+
+#[cfg(all(test, feature = "serde"))]
+mod tests {
+    use super::*;
+    use crate::drawn_curves::turning;
+
+    #[test]
+    fn frames_that_could_not_have_been_kept_are_refused() {
+        let egg = |t: f64| 1.0 + 0.2 * t.cos();
+        let frame = |number: u32, points: u32| (f64::from(number), turning(number, points, egg));
+        let of = |frames: Vec<(f64, Outline)>| SparseFrames { frames, segment: 0 };
+        let few: Vec<_> = (0..5).map(|number| frame(number, 12)).collect();
+        let is_valid = |frames: Vec<_>, model| of(frames).is_valid(model, 20.0);
+        assert!(is_valid(few.clone(), MotionModel::Rigid) && is_valid(Vec::new(), MotionModel::Affine));
+        assert!(!is_valid(few.clone(), MotionModel::Affine));
+        assert!(!is_valid(few.iter().rev().cloned().collect(), MotionModel::Rigid));
+        assert!(
+            !is_valid(vec![frame(0, 24)], MotionModel::Rigid) && !is_valid(vec![frame(21, 12)], MotionModel::Rigid)
+        );
+        assert!(!is_valid((0..16).map(|number| frame(number, 12)).collect(), MotionModel::Rigid));
     }
 }

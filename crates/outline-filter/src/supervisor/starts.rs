@@ -31,7 +31,7 @@ impl MotionFilter {
         self.clock.last_frame = time;
         (self.counts.rejected_in_a_row, self.counts.hidden_in_a_row) = (0, 0);
         self.search_memory.unfound.clear();
-        self.search_memory.sparse = SparseFrames::begin(model, time, outline);
+        self.search_memory.sparse = SparseFrames::begin(model, self.segment(), (time, outline));
         Ok(())
     }
 

@@ -17,7 +17,7 @@ const FORMAT: StateFormat = state_format(*b"filt", "filter");
 
 impl MotionFilter {
     /// Everything that the filter knows, as bytes: 50 to 100 kB for an outline of 400 points, for each rival of its turn up to as much again,
-    /// before the object was found again also up to two outlines, and while its map is cut anew the frames that it is cut from, at most 128, their
+    /// before the object was found again also up to two outlines, of outlines of few points the first 15, and while its map is cut anew the frames that it is cut from, at most 128, their
     /// points once more or the track and its rivals on the new map. What was [measured between frames](Self::prepare) is left to the next step. A
     /// filter [made from them](Self::from_bytes) goes on as this one would, to the last bit. The first four bytes are the version of the format,
     /// little-endian.
@@ -112,7 +112,7 @@ impl MotionFilter {
         if !self.unfound_are_valid() {
             return inconsistent("frames without the object");
         }
-        if !self.search_memory.sparse.is_valid(self.clock.last_frame) {
+        if !self.search_memory.sparse.is_valid(model, self.clock.last_frame) {
             return inconsistent("first frames of few points");
         }
         Ok(())

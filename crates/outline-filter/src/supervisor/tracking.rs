@@ -12,6 +12,7 @@ use crate::{
     search::displacement_nearby,
     track::{Comparison, Outcome, Track},
     tuning::{
+        noise::LARGEST_RATIO,
         symmetry::NEARBY,
         update::{PARTLY_THERE, SUDDEN},
     },
@@ -23,12 +24,13 @@ pub(super) fn largest_innovation(track: &Track) -> f64 {
     SUDDEN * track.model().parameter_count() as f64
 }
 
-/// The gate for a frame of a track wherever its motion has led, noise included.
+/// The gate for a frame of a track wherever its motion has led, noise included. Edges that may lie off do so elsewhere in every frame.
 pub(super) fn gate(settings: &FilterSettings, track: &Track) -> Gate {
+    let largest_noise = track.largest_noise().hypot(LARGEST_RATIO * settings.edge_uncertainty);
     Gate {
         smallest_agreement: settings.smallest_agreement,
         largest_innovation: None,
-        largest_noise: Some(track.largest_noise()),
+        largest_noise: Some(largest_noise),
     }
 }
 

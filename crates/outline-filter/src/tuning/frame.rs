@@ -69,6 +69,11 @@ pub(crate) mod noise {
     pub(crate) const LARGEST_REMEMBERED: f64 = 2.0;
     /// As [`LARGEST`], while no frame has been compared with another.
     pub(crate) const LARGEST_AT_FIRST: f64 = 0.03;
+    /// Frames at one place beyond which what they say of the noise is that of an object at rest.
+    pub(crate) const RESTED: f64 = 4.0;
+    /// Root mean square displacement from where an object was first beyond which it is seen in another place, in radii: that of the errors that are reckoned
+    /// with while no frame has been compared with another.
+    pub(crate) const ANOTHER_PLACE: f64 = LARGEST_AT_FIRST;
     /// Stretches that the contour is cut into to see whether its errors are correlated.
     pub(crate) const STRETCHES: usize = 24;
     /// Fewest points of a stretch whose mean tells something of correlation.

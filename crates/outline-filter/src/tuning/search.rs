@@ -40,7 +40,7 @@ pub(crate) mod groupwise {
     /// Points of a frame below which a map begun with it alone is too coarse: of 20 points of a smooth outline a chord is off by a tenth of what lobes of
     /// an eighth stand out by.
     pub(crate) const SPARSE: usize = 24;
-    /// Frames after which they are aligned: a hundred points or two.
+    /// Frames after which they are aligned: some hundred points.
     pub(crate) const OCCASIONS: [usize; 2] = [8, 16];
     /// Largest turn from frame to frame that is looked for, rad.
     pub(crate) const LARGEST_TURN: f64 = 0.4;
@@ -54,6 +54,11 @@ pub(crate) mod groupwise {
     pub(crate) const BETTER: f64 = 40.0;
     /// Distance beyond which points count alike, in radii.
     pub(crate) const FAR: f64 = 0.25;
+    /// Mean square by which a contour must differ from itself after a part of a turn not to be symmetric, in variances of its scatter. It differs by two
+    /// by noise alone, and by about as much again as points are few.
+    pub(crate) const SYMMETRIC: f64 = 9.0;
+    /// Largest order of a symmetry that so few points show.
+    pub(crate) const LARGEST_ORDER: usize = 12;
     /// Halvings of the steps that turn and path are refined by.
     pub(crate) const HALVINGS: usize = 8;
 }
