@@ -12,9 +12,9 @@ use super::{
 };
 use crate::tuning::steady_change as tuning;
 
-/// Motions that change at a steady rate since hypotheses began: a constant generator, one whose centroid has run straight, and one whose centroid goes
-/// any way. Next to nothing is taken to be known of the rates of change beforehand, so that what the frames say of them can be weighed for each size
-/// that they may have. They have no part in where the object is expected.
+/// Motions that change at a steady rate since hypotheses began: a constant generator, one whose centroid has run straight, and one whose centroid
+/// goes any way. Next to nothing is taken to be known of the rates of change beforehand, so that what the frames say of them can be weighed for each
+/// size that they may have. They have no part in where the object is expected.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct SteadyChange<const N: usize> {
@@ -69,8 +69,8 @@ impl<const N: usize> SteadyChange<N> {
         if self.is_over() { &mut [] } else { &mut self.hypotheses }
     }
 
-    /// Takes a frame, of which the information is given too, as long as it is followed; `velocity` is the logarithm of its likelihood where the velocity of
-    /// a point near the centroid is constant.
+    /// Takes a frame, of which the information is given too, as long as it is followed; `velocity` is the logarithm of its likelihood where the
+    /// velocity of a point near the centroid is constant.
     pub(super) fn update(
         &mut self,
         (measurement, information): (&CentredMeasurement, &CentredMatrix),

@@ -33,8 +33,8 @@ pub(crate) enum Counted {
     ByDeviation,
 }
 
-/// Where frames that have been compared show the object. In one place errors that stay there, of pixels or of the ground beside an edge, are the same in
-/// all of them, and pass for the outline.
+/// Where frames that have been compared show the object. In one place errors that stay there, of pixels or of the ground beside an edge, are the same
+/// in all of them, and pass for the outline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 enum SeenIn {
@@ -116,8 +116,8 @@ impl Rounding {
         ROUNDING * self.share * self.pixel
     }
 
-    /// Deviation of the place of such a side in one frame from that in another: an object that hardly moves shows the same pixels for a while, and then
-    /// whole sides go on by a pixel at once, or by what is left of it.
+    /// Deviation of the place of such a side in one frame from that in another: an object that hardly moves shows the same pixels for a while, and
+    /// then whole sides go on by a pixel at once, or by what is left of it.
     fn of_step(&self) -> f64 {
         SQRT_2 * self.of_side()
     }
@@ -233,8 +233,8 @@ impl NoiseModel {
         )
     }
 
-    /// Most noise that a frame may have: by comparison with what most frames have shown, once there are any, and as much as sides along the pixels go on
-    /// by at once.
+    /// Most noise that a frame may have: by comparison with what most frames have shown, once there are any, and as much as sides along the pixels go
+    /// on by at once.
     pub(crate) fn tolerated(&self) -> f64 {
         self.tolerated_where(self.tolerance)
     }
@@ -259,8 +259,8 @@ impl NoiseModel {
         self.correlation.of_residuals().max(self.rounding.shared_by)
     }
 
-    /// As [`correlation`](Self::correlation), with what pose and offsets have taken off the residuals, and errors that reach beyond a stretch: (50b) in
-    /// docs/motion-filter.md.
+    /// As [`correlation`](Self::correlation), with what pose and offsets have taken off the residuals, and errors that reach beyond a stretch: (50b)
+    /// in docs/motion-filter.md.
     pub(crate) fn stated_correlation(&self) -> f64 {
         self.correlation.ratio().max(self.correlation())
     }
@@ -275,8 +275,8 @@ impl NoiseModel {
         self.sigma * self.sigma * self.correlation()
     }
 
-    /// As [`effective_variance`](Self::effective_variance), by the best estimate of the correlation: that of what is stated, and of poses that hypotheses
-    /// of dynamics are judged by.
+    /// As [`effective_variance`](Self::effective_variance), by the best estimate of the correlation: that of what is stated, and of poses that
+    /// hypotheses of dynamics are judged by.
     pub(crate) fn stated_variance(&self) -> f64 {
         self.sigma * self.sigma * self.stated_correlation()
     }

@@ -50,8 +50,8 @@ const RATES: [Rate; 5] =
     [Rate::Spin, Rate::Velocity(0), Rate::Velocity(1), Rate::Acceleration(0), Rate::Acceleration(1)];
 
 impl Motion {
-    /// With another rate, by a step that moves points of a body of such a radius by as much as it turns them, at the ends of the time for an acceleration;
-    /// `None` where the path does not have it.
+    /// With another rate, by a step that moves points of a body of such a radius by as much as it turns them, at the ends of the time for an
+    /// acceleration; `None` where the path does not have it.
     fn stepped(mut self, rate: Rate, step: f64, (radius, span): (f64, f64)) -> Option<Self> {
         match (rate, &mut self.path) {
             (Rate::Spin, _) => self.spin += step,
@@ -96,9 +96,9 @@ struct Place {
     point: Point2<f64>,
 }
 
-/// Frames of a closed outline that is seen as a whole, aligned by the rigid motion that makes the smoothest contour of their points. `None` where no turn
-/// is clearly better than all others, as of a circle, or of a symmetric body. A contour that runs to and fro as seen from the centroid makes no smooth
-/// one, so that hardly any turn is.
+/// Frames of a closed outline that is seen as a whole, aligned by the rigid motion that makes the smoothest contour of their points. `None` where no
+/// turn is clearly better than all others, as of a circle, or of a symmetric body. A contour that runs to and fro as seen from the centroid makes no
+/// smooth one, so that hardly any turn is.
 pub(crate) fn aligned(frames: &[TimedPoints]) -> Option<Aligned> {
     let mut group = Group::new(frames)?;
     let (best, gain) = group.best_turn()?;
@@ -140,7 +140,8 @@ impl<'a> Group<'a> {
         (of_others > 0.0).then(|| (best, 0.5 * self.around.len() as f64 * (of_others / scatter).ln()))
     }
 
-    /// Whether the contour that a motion makes is about the same after a part of a whole turn: turns faster by that from frame to frame explain it as well.
+    /// Whether the contour that a motion makes is about the same after a part of a whole turn: turns faster by that from frame to frame explain it as
+    /// well.
     fn is_symmetric(&mut self, motion: &Motion) -> bool {
         let scatter = self.scatter(motion);
         let count = self.around.len();
@@ -189,8 +190,9 @@ impl<'a> Group<'a> {
         self.around.sort_unstable_by(|a, b| a.angle.total_cmp(&b.angle));
     }
 
-    /// How much farther out points are than a line through their neighbours has it, over the angle: the mean of the squares, each divided by the variance
-    /// that unit noise of the points gives it. Distances from a chord would fall where two neighbours are nearly one, as its direction is noise then.
+    /// How much farther out points are than a line through their neighbours has it, over the angle: the mean of the squares, each divided by the
+    /// variance that unit noise of the points gives it. Distances from a chord would fall where two neighbours are nearly one, as its direction is
+    /// noise then.
     fn scatter(&mut self, motion: &Motion) -> f64 {
         self.merge(motion);
         let (count, far) = (self.around.len(), (tuning::FAR * self.radius).powi(2));

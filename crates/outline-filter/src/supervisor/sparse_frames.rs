@@ -60,8 +60,8 @@ fn may_align(model: MotionModel, outline: &Outline) -> bool {
 }
 
 impl MotionFilter {
-    /// Keeps one of the first frames of an outline of few points, and aligns them together where a map begun with the first of them alone does not show
-    /// the turn, or has not found the object in some. What was said of a frame stays said.
+    /// Keeps one of the first frames of an outline of few points, and aligns them together where a map begun with the first of them alone does not
+    /// show the turn, or has not found the object in some. What was said of a frame stays said.
     pub(super) fn keep_if_sparse(&mut self, time: f64, outline: &Outline) {
         if !self.search_memory.sparse.keep(self.settings.model, time, outline) {
             return;
@@ -78,8 +78,8 @@ impl MotionFilter {
         }
     }
 
-    /// Begins anew with frames that are aligned together, the last of them being that which was processed last. `None`, and nothing changes, where they
-    /// are not, or do not fit the outline that they make.
+    /// Begins anew with frames that are aligned together, the last of them being that which was processed last. `None`, and nothing changes, where
+    /// they are not, or do not fit the outline that they make.
     fn begin_with_aligned(&mut self, SparseFrames { frames: all, segment }: &SparseFrames) -> Option<()> {
         let (first_time, first) = all.first()?;
         let (model, frame) = (self.settings.model, &mut self.frame);

@@ -32,8 +32,8 @@ pub(crate) mod lattice {
     pub(crate) const FEWEST_LINES: usize = 8;
     /// Pitches that are tried: interpolated coordinates may be the same by chance, and stand between the lines.
     pub(crate) const PITCHES_TRIED: usize = 4;
-    /// Share of points at the nodes of a lattice twice as fine from which on points on its lines are those of a mask: of a side that lies along the pixels of a
-    /// grey picture one point in 25 is, and of one that does not so are as few of a mask, whose contour is ragged then.
+    /// Share of points at the nodes of a lattice twice as fine from which on points on its lines are those of a mask: of a side that lies along the
+    /// pixels of a grey picture one point in 25 is, and of one that does not so are as few of a mask, whose contour is ragged then.
     pub(crate) const SIDES_AT_NODES: f64 = 0.25;
     /// Distance from a line within which a point is on it, in pitches: coordinates in a file may be rounded.
     pub(crate) const ON_LINE: f64 = 0.01;
@@ -62,8 +62,8 @@ pub(crate) mod noise {
     pub(crate) const FRAMES: usize = 9;
     /// A frame with more than so many times the noise of most frames does not show the known outline, however well the map is bent to it.
     pub(crate) const LARGEST_RATIO: f64 = 1.8;
-    /// The noise of most frames counts for a limit of no more than this, in radii: outlines of different objects differ by more. So many times the noise
-    /// that is known ([`LARGEST_RATIO`]) are tolerated all the same.
+    /// The noise of most frames counts for a limit of no more than this, in radii: outlines of different objects differ by more. So many times the
+    /// noise that is known ([`LARGEST_RATIO`]) are tolerated all the same.
     pub(crate) const LARGEST: f64 = 0.05;
     /// Spread that is remembered of a frame at most, in [`LARGEST`]: beyond, it is one that shows something else.
     pub(crate) const LARGEST_REMEMBERED: f64 = 2.0;
@@ -71,8 +71,8 @@ pub(crate) mod noise {
     pub(crate) const LARGEST_AT_FIRST: f64 = 0.03;
     /// Frames at one place beyond which what they say of the noise is that of an object at rest.
     pub(crate) const RESTED: f64 = 4.0;
-    /// Root mean square displacement from where an object was first beyond which it is seen in another place, in radii: that of the errors that are reckoned
-    /// with while no frame has been compared with another.
+    /// Root mean square displacement from where an object was first beyond which it is seen in another place, in radii: that of the errors that are
+    /// reckoned with while no frame has been compared with another.
     pub(crate) const ANOTHER_PLACE: f64 = LARGEST_AT_FIRST;
     /// Stretches that the contour is cut into to see whether its errors are correlated.
     pub(crate) const STRETCHES: usize = 24;
@@ -80,8 +80,8 @@ pub(crate) mod noise {
     pub(crate) const FEWEST_IN_STRETCH: usize = 3;
     /// One in so many of the points of a stretch must count, and of the stretches, for the correlation to be told: most of the contour.
     pub(crate) const ONE_IN_COUNTS: f64 = 2.0;
-    /// Share of the variance of a mean that the offsets must leave for the correlation to be told. It is a half in the second frame: with less, most of what
-    /// the frame shows was not known before.
+    /// Share of the variance of a mean that the offsets must leave for the correlation to be told. It is a half in the second frame: with less, most
+    /// of what the frame shows was not known before.
     pub(crate) const LEAST_LEFT: f64 = 0.2;
     /// Frames that the correlation is averaged over.
     pub(crate) const CORRELATION_MEMORY: f64 = 50.0;
@@ -162,8 +162,8 @@ pub(crate) mod update {
     pub(crate) const MOTION_PRIOR: f64 = 1e-10;
     /// Most linearisations per frame. One suffices in steady state; acquisition needs three or four.
     pub(crate) const MOST_ITERATIONS: usize = 6;
-    /// As that, as long as each of them moves points by more than [`FAR`] cells, and [`BEYOND_NOISE`]: an object that lies a fifth of its size from where
-    /// it was expected takes ten and more.
+    /// As that, as long as each of them moves points by more than [`FAR`] cells, and [`BEYOND_NOISE`]: an object that lies a fifth of its size from
+    /// where it was expected takes ten and more.
     pub(crate) const MOST_FROM_FAR: usize = 20;
     /// Cells that points are moved by beyond which they have left their own.
     pub(crate) const FAR: f64 = 1.0;
@@ -207,8 +207,8 @@ pub(crate) mod update {
     pub(crate) const REGULAR_INFORMATION: f64 = 1e-12;
     /// Fewest points beyond the known ends that make the map grow.
     pub(crate) const FEWEST_NEW_POINTS: usize = 4;
-    /// Deviations of the place of the known outline in a frame that a cell must be longer than for the map to grow: nearly all poses that are off by no
-    /// more put what is known into the cells that it has, and not into new ones.
+    /// Deviations of the place of the known outline in a frame that a cell must be longer than for the map to grow: nearly all poses that are off by
+    /// no more put what is known into the cells that it has, and not into new ones.
     pub(crate) const DEVIATIONS_PER_CELL: f64 = 3.0;
     /// Squared innovation per parameter beyond which the motion has not gone on as it was: five deviations in every one. Chance does
     /// that once in a million frames.

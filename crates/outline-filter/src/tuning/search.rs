@@ -37,25 +37,25 @@ pub(crate) mod remapping {
 
 /// Groupwise registration: the first frames of an outline of few points aligned together.
 pub(crate) mod groupwise {
-    /// Points of a frame below which a map begun with it alone is too coarse: of 20 points of a smooth outline a chord is off by a tenth of what lobes of
-    /// an eighth stand out by.
+    /// Points of a frame below which a map begun with it alone is too coarse: of 20 points of a smooth outline a chord is off by a tenth of what
+    /// lobes of an eighth stand out by.
     pub(crate) const SPARSE: usize = 24;
     /// Frames after which they are aligned: some hundred points.
     pub(crate) const OCCASIONS: [usize; 2] = [8, 16];
     /// Largest turn from frame to frame that is looked for, rad.
     pub(crate) const LARGEST_TURN: f64 = 0.4;
-    /// Turns over all frames that are tried are so far apart, rad: an outline whose distance from its centroid changes by a quarter of itself per radian is
-    /// then off by four thousandths.
+    /// Turns over all frames that are tried are so far apart, rad: an outline whose distance from its centroid changes by a quarter of itself per
+    /// radian is then off by four thousandths.
     pub(crate) const STEP: f64 = 0.03;
     /// A turn that differs by more than so much over all frames is another one, rad.
     pub(crate) const ANOTHER: f64 = 0.25;
-    /// Logarithm of the likelihood by which the best turn must be better than all others. Of 200 circles of 8 to 20 points the largest was 18; of smooth
-    /// outlines with lobes of a tenth 96 points reach about 100.
+    /// Logarithm of the likelihood by which the best turn must be better than all others. Of 200 circles of 8 to 20 points the largest was 18; of
+    /// smooth outlines with lobes of a tenth 96 points reach about 100.
     pub(crate) const BETTER: f64 = 40.0;
     /// Distance beyond which points count alike, in radii.
     pub(crate) const FAR: f64 = 0.25;
-    /// Mean square by which a contour must differ from itself after a part of a turn not to be symmetric, in variances of its scatter. It differs by two
-    /// by noise alone, and by about as much again as points are few.
+    /// Mean square by which a contour must differ from itself after a part of a turn not to be symmetric, in variances of its scatter. It differs by
+    /// two by noise alone, and by about as much again as points are few.
     pub(crate) const SYMMETRIC: f64 = 9.0;
     /// Largest order of a symmetry that so few points show.
     pub(crate) const LARGEST_ORDER: usize = 12;

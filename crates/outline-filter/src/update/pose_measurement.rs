@@ -27,8 +27,8 @@ pub(crate) struct PoseMeasurement {
 }
 
 impl PoseMeasurement {
-    /// Of a solved frame that has not been committed yet, in units of the noise: `frame.cells_with_frame` have the information with it, those of the belief
-    /// without.
+    /// Of a solved frame that has not been committed yet, in units of the noise: `frame.cells_with_frame` have the information with it, those of the
+    /// belief without.
     pub(crate) fn of(belief: &Belief, proposal: &Proposal, frame: &Frame) -> Self {
         match belief.parameter_count() {
             3 => Self::sized::<3, 6>(belief, proposal, frame),
@@ -61,8 +61,8 @@ impl PoseMeasurement {
         }
     }
 
-    /// The error of the predicted pose that the frame asks for, divided by a variance, and its covariance. Along what the frame hardly shows the error is next
-    /// to none.
+    /// The error of the predicted pose that the frame asks for, divided by a variance, and its covariance. Along what the frame hardly shows the
+    /// error is next to none.
     pub(crate) fn error(&self) -> Option<(SVector<f64, MAX_PARAMETERS>, PoseMatrix)> {
         let information = self.information + PoseMatrix::from_diagonal_element(1.0 / LARGEST_VARIANCE);
         let covariance = information.cholesky()?.inverse();
@@ -75,8 +75,8 @@ impl PoseMeasurement {
     }
 }
 
-/// Share of the variance of mean residuals that the offsets of a solved frame leave: 1 minus the mean leverage of what it adds to each. Half in the second
-/// frame, all once the outline is known.
+/// Share of the variance of mean residuals that the offsets of a solved frame leave: 1 minus the mean leverage of what it adds to each. Half in the
+/// second frame, all once the outline is known.
 pub(crate) fn left_by_offsets(belief: &Belief, frame: &Frame) -> f64 {
     let count = frame.right.len();
     let own = frame.cells_with_frame.own()[..count].iter().zip(&belief.information.cells.own()[..count]);

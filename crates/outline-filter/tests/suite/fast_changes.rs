@@ -63,8 +63,8 @@ fn the_spin_of_a_body_that_swings_is_within_its_deviations_at_its_turning_points
 
 #[test]
 fn the_turn_of_affine_motion_that_swings_is_not_taken_to_stay_at_every_turning_point() {
-    // From frame to frame it changes by what moves a pose by no more than some of its deviations. Where rates that change stayed as readily as the one
-    // of rigid motion, 18 of 427 were off and 365 within two deviations.
+    // From frame to frame it changes by what moves a pose by no more than some of its deviations. Where rates that change stayed as readily as the
+    // one of rigid motion, 18 of 427 were off and 365 within two deviations.
     let told = told_by(MotionModel::Affine, |time| 1.5 * (9.0 * time + 0.5).cos());
     assert!(told.off * 50 < told.stated && told.stated * 10 > told.frames * 7, "{told:?}");
     assert!(told.within * 100 > told.stated * 88, "{told:?}");
@@ -101,8 +101,8 @@ fn a_body_that_is_shaken_without_turning_has_an_angular_velocity_that_is_known_a
     }
 }
 
-/// How far values are off after a blow, of which the time is given in frames, in deviations: the most of all frames, and the deviations of the velocity
-/// eight frames after it.
+/// How far values are off after a blow, of which the time is given in frames, in deviations: the most of all frames, and the deviations of the
+/// velocity eight frames after it.
 fn after_blow(shape: BuiltInShape, seed: u64, blow: f64, (omega, velocity): (f64, Vector2<f64>)) -> (f64, f64) {
     const NOISE: f64 = 0.0003;
     let at_rest = RigidMotion { omega: 0.0, b1: 0.0, b2: 0.0 };
@@ -134,8 +134,8 @@ fn after_blow(shape: BuiltInShape, seed: u64, blow: f64, (omega, velocity): (f64
     (off, deviation)
 }
 
-/// A pose that lies far from where it was expected, and is turned, is not where the velocity of its logarithm says: taken to be there, the velocity was
-/// thirteen deviations off in one of these recordings, and its deviation up to forty times as large eight frames later.
+/// A pose that lies far from where it was expected, and is turned, is not where the velocity of its logarithm says: taken to be there, the velocity
+/// was thirteen deviations off in one of these recordings, and its deviation up to forty times as large eight frames later.
 #[test]
 fn the_velocity_of_a_body_that_is_struck_is_known_from_the_next_frames_on() {
     for (number, shape) in [BuiltInShape::Bird, BuiltInShape::Phone, BuiltInShape::Van].into_iter().enumerate() {
@@ -163,8 +163,8 @@ fn a_body_that_is_struck_just_before_a_frame_is_not_said_to_rest_in_it() {
     assert!(said <= 1, "{said} of 24");
 }
 
-/// Errors by the place in the picture, as of a texture of the ground, are the same in all frames at rest: the noise that these show is a tenth of what the
-/// points scatter by once the body moves. Five or six of the frames after the push were rejected.
+/// Errors by the place in the picture, as of a texture of the ground, are the same in all frames at rest: the noise that these show is a tenth of
+/// what the points scatter by once the body moves. Five or six of the frames after the push were rejected.
 #[test]
 fn a_body_that_is_pushed_is_followed_though_errors_of_its_edges_stood_still_while_it_rested() {
     for seed in 0..4 {
