@@ -76,7 +76,7 @@ impl FamilyTests {
     }
 
     fn estimated(&self, model: MotionModel, of_side: f64) -> UnmodelledEstimate {
-        let mut estimate = UnmodelledEstimate::of_nothing(UnmodelledMatrix::zeros());
+        let mut estimate = UnmodelledEstimate::default();
         if self.weight <= 0.0 {
             return estimate;
         }

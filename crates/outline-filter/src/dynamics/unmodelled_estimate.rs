@@ -3,7 +3,7 @@ use super::{to_and_fro::ChangeOfShape, wrong_family::WrongFamily};
 use crate::update::UnmodelledMatrix;
 
 /// What the outlines do beside their motion, as far as it is told.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct UnmodelledEstimate {
     /// What is there, by the noise of the points.
     pub(crate) family: Option<WrongFamily>,
@@ -18,11 +18,6 @@ pub(crate) struct UnmodelledEstimate {
 }
 
 impl UnmodelledEstimate {
-    /// That nothing is known of, with second moments of what may be there.
-    pub(super) const fn of_nothing(moments: UnmodelledMatrix) -> Self {
-        Self { family: None, is_beyond_doubt: false, displacement: 0.0, change_of_shape: 0.0, moments }
-    }
-
     /// The most that points of a frame may be displaced by: an outline that is learnt anew from frame to frame hides most of a change of its shape.
     pub(crate) fn displacement_of_points(&self) -> f64 {
         self.displacement.max(self.change_of_shape)
@@ -48,8 +43,7 @@ mod tests {
 
     #[test]
     fn a_change_of_shape_that_is_beyond_doubt_beside_something_else_counts_by_the_larger_displacement() {
-        let nothing = UnmodelledEstimate::of_nothing(UnmodelledMatrix::zeros());
-        let before = UnmodelledEstimate { family: Some(WrongFamily::Growth), displacement: 0.01, ..nothing };
+        let before = UnmodelledEstimate { family: Some(WrongFamily::Growth), displacement: 0.01, ..Default::default() };
         let after = [(0.02, true), (0.005, true), (0.02, false)].map(|change| {
             let mut estimate = before;
             estimate.add_change_of_shape(change);
@@ -62,9 +56,9 @@ mod tests {
     #[test]
     fn points_are_displaced_by_a_change_of_shape_whatever_explains_it_and_poses_unless_it_is_growth() {
         let displacements = [WrongFamily::Shear, WrongFamily::Growth].map(|family| {
-            let nothing = UnmodelledEstimate::of_nothing(UnmodelledMatrix::zeros());
             let family = Some(family);
-            let estimate = UnmodelledEstimate { family, displacement: 0.001, change_of_shape: 0.09, ..nothing };
+            let estimate =
+                UnmodelledEstimate { family, displacement: 0.001, change_of_shape: 0.09, ..Default::default() };
             [estimate.displacement_of_points(), estimate.displacement_of_poses()]
         });
         assert_eq!(displacements, [[0.09, 0.09], [0.09, 0.001]]);

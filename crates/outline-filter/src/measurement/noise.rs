@@ -177,7 +177,12 @@ impl NoiseModel {
 
     /// Whether several frames have been compared, and show the object in one place.
     fn is_of_rest(&self) -> bool {
-        self.seen_in == SeenIn::OnePlace && self.weight > tuning::RESTED
+        self.is_seen_in_one_place() && self.weight > tuning::RESTED
+    }
+
+    /// Whether all frames that have been compared show the object in one place.
+    pub(crate) fn is_seen_in_one_place(&self) -> bool {
+        self.seen_in == SeenIn::OnePlace
     }
 
     /// Takes the object to be seen in another place than where it was. What frames say that show it at rest counts for one then, as they are alike.

@@ -2,12 +2,16 @@
 //!
 //! The chords between a dozen points of one frame are no outline that the next frame could be compared with: what they cut off is more than a turn
 //! moves. Points of several frames tell the outline, once the frames are aligned; and they are aligned best where they make the smoothest contour.
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use freeform_riccati::map_point;
 use nalgebra::{Matrix3, Matrix3x2, Point2, Rotation2, Vector2, Vector3};
 
-use crate::{map::centroid_within, track::turn_between, tuning::groupwise as tuning};
+use crate::{
+    map::centroid_within,
+    track::{turn_between, wrapped},
+    tuning::groupwise as tuning,
+};
 
 /// Time and points of a frame, in their order around.
 pub(crate) type TimedPoints = (f64, Vec<Point2<f64>>);
@@ -146,7 +150,7 @@ impl<'a> Group<'a> {
         let scatter = self.scatter(motion);
         let count = self.around.len();
         let distance_at = |angle: f64| {
-            let angle = (angle + PI).rem_euclid(TAU) - PI;
+            let angle = wrapped(angle);
             let next = self.around.partition_point(|place| place.angle < angle);
             let [before, after] = [self.around[(next + count - 1) % count], self.around[next % count]];
             let [along, whole] = [angle - before.angle, after.angle - before.angle].map(|part| part.rem_euclid(TAU));
@@ -215,8 +219,7 @@ impl<'a> Group<'a> {
         let mut least = self.scatter(&motion);
         let mut size = tuning::STEP / span;
         for _ in 0..tuning::HALVINGS {
-            // No more than leads from one turn that is tried to the next.
-            for _ in 0..4 {
+            for _ in 0..tuning::STEPS_OF_A_SIZE {
                 let before = least;
                 for (rate, step) in RATES.iter().flat_map(|rate| [(*rate, size), (*rate, -size)]) {
                     let Some(other) = motion.stepped(rate, step, (self.radius, span)) else { continue };
@@ -273,7 +276,7 @@ mod tests {
             let time = f64::from(frame) / 30.0;
             let pose = turn_between(spin * time, &Vector2::zeros(), &(time * velocity));
             let point = |i: u8| {
-                let t = std::f64::consts::TAU * (f64::from(i) + random.random::<f64>()) / f64::from(points);
+                let t = TAU * (f64::from(i) + random.random::<f64>()) / f64::from(points);
                 let noise = Vector2::from_fn(|_, _| NOISE * random.sample::<f64, _>(StandardNormal));
                 map_point(&pose, &polar(lobed(t, lobes), t)) + noise
             };
@@ -305,7 +308,7 @@ mod tests {
         for order in [2, 3, 4, 6] {
             let lobes = [(f64::from(order), [0.15, 0.0])];
             for seed in 0..4 {
-                let spin = 30.0 * std::f64::consts::TAU / f64::from(order) - 6.0;
+                let spin = 30.0 * TAU / f64::from(order) - 6.0;
                 let (frames, _) = frames_of((8, 12), &lobes, (spin, Vector2::new(0.7, -0.4)), seed);
                 assert!(aligned(&frames).is_none(), "{order} {seed}");
             }

@@ -20,6 +20,14 @@ pub(super) struct SearchMemory {
     pub(super) sparse: SparseFrames,
 }
 
+impl SearchMemory {
+    /// Begins with the first outline of a track, of which nothing else is known.
+    pub(super) fn begin(&mut self, first: &Outline) {
+        (self.landmarks, self.symmetry) = (Landmarks::of(first), 1);
+        self.unfound.clear();
+    }
+}
+
 impl Default for SearchMemory {
     fn default() -> Self {
         Self {

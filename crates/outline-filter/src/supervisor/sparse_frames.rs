@@ -13,11 +13,13 @@ use super::{
 };
 use crate::{
     map::{CellsInCommon, TurnEvent, TurnEvidence},
-    measurement::Frame,
-    search::{Aligned, Landmarks, TimedPoints, aligned},
+    search::{Aligned, TimedPoints, aligned},
     track::Track,
     tuning::groupwise as tuning,
 };
+
+/// Frames after which they are aligned for the last time.
+const MOST_FRAMES: usize = tuning::OCCASIONS[tuning::OCCASIONS.len() - 1];
 
 /// The frames of a track since it was begun, taken or not, as long as they may have to be aligned together: none otherwise.
 #[derive(Debug, Clone, Default)]
@@ -72,8 +74,7 @@ impl MotionFilter {
         if evidence == Some(TurnEvidence::Refuted) || !is_unseen && self.counts.rejected_by_track == 0 {
             return;
         }
-        let count = all.frames.len();
-        if self.begin_with_aligned(&all).is_none() && count < tuning::OCCASIONS[tuning::OCCASIONS.len() - 1] {
+        if self.begin_with_aligned(&all).is_none() && all.frames.len() < MOST_FRAMES {
             self.search_memory.sparse = all;
         }
     }
@@ -88,12 +89,15 @@ impl MotionFilter {
         if begun.noise().rounding().pixel() > 0.0 {
             return None;
         }
-        let timed = |(time, outline): &(f64, Outline)| timed_points(&begun, frame, *time, outline);
+        let timed = |(time, outline): &(f64, Outline)| {
+            frame.load(outline, begun.reference());
+            (*time, frame.points.clone())
+        };
         let timed: Vec<TimedPoints> = all.iter().map(timed).collect();
         let Aligned { poses, contour } = aligned(&timed)?;
         let (mut track, _) = begun.recut_along(vec![(contour, true)], first, CellsInCommon::NotNeeded, frame)?;
         track.begin_as(&begun, first, frame);
-        track.set_time_unit(self.clock.unit.unwrap_or(1.0));
+        track.set_time_unit(self.seconds_per_unit());
         let (second, seconds) = (poses.get(1)?, timed.get(1)?.0 - first_time);
         track.set_motion(model.motion_between(second, seconds)?);
         let mut window = InitialisationWindow::begin(*first_time, first, &track);
@@ -109,9 +113,7 @@ impl MotionFilter {
         window.set_poses(poses);
         self.window = window;
         self.turn_hypotheses = TurnHypotheses::default();
-        self.search_memory.landmarks = Landmarks::of(first);
-        self.search_memory.symmetry = 1;
-        self.search_memory.unfound.clear();
+        self.search_memory.begin(first);
         self.counts.begin_with(all.len());
         // Poses go back to the first of these frames again.
         self.counts.begun_with_turn += usize::from(self.segment() != *segment);
@@ -122,18 +124,11 @@ impl MotionFilter {
     }
 }
 
-/// The points of a frame, normalised as a track has them.
-fn timed_points(track: &Track, frame: &mut Frame, time: f64, outline: &Outline) -> TimedPoints {
-    frame.load(outline, track.reference());
-    (time, frame.points.clone())
-}
-
 #[cfg(feature = "serde")]
 impl SparseFrames {
     /// Whether they are such frames of a model, no more than are kept, and came one after the other up to the `last` of all.
     pub(super) fn is_valid(&self, model: MotionModel, last: f64) -> bool {
-        let most = tuning::OCCASIONS[tuning::OCCASIONS.len() - 1];
-        self.frames.len() < most
+        self.frames.len() < MOST_FRAMES
             && self.segment < StateFormat::MOST_COUNTED
             && self.frames.iter().all(|(time, outline)| time.is_finite() && *time <= last && may_align(model, outline))
             && self.frames.is_sorted_by(|(a, _), (b, _)| a < b)

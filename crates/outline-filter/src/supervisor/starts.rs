@@ -12,7 +12,6 @@ use super::{
     window::InitialisationWindow,
 };
 use crate::{
-    search::Landmarks,
     track::Track,
     tuning::{map::FEWEST_POINTS, supervisor as tuning},
 };
@@ -24,13 +23,11 @@ impl MotionFilter {
         let FilterSettings { model, mask_pixel, .. } = self.settings;
         let mut track = Track::begin(model, outline, mask_pixel, &mut self.frame).ok_or(too_few)?;
         track.set_time_unit(self.seconds_per_unit());
-        self.search_memory.landmarks = Landmarks::of(outline);
-        self.search_memory.symmetry = 1;
+        self.search_memory.begin(outline);
         self.begin_window(time, outline, &track);
         self.replace(track, MotionHistory::default(), time, Phase::Acquiring);
         self.clock.last_frame = time;
         (self.counts.rejected_in_a_row, self.counts.hidden_in_a_row) = (0, 0);
-        self.search_memory.unfound.clear();
         self.search_memory.sparse = SparseFrames::begin(model, self.segment(), (time, outline));
         Ok(())
     }

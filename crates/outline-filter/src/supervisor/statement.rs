@@ -90,10 +90,11 @@ impl MotionFilter {
         let [pixel, of_side] = track.rounding_of_side();
         let span = track.span_of_motion(self.history.memory());
         let rounding = if pixel > 0.0 { of_side / track.rounding_teeth_seen(span, pixel).max(1.0) } else { 0.0 };
-        let [mut of_pose, mut of_motion] = track.systematic(self.settings.edge_uncertainty.hypot(rounding), span);
+        let [mut of_pose, mut of_motion] = track.systematic([self.settings.edge_uncertainty.hypot(rounding); 2], span);
         // What the motion model does not have need not be constant.
-        let [[pose, _], [_, motion]] = [unmodelled.displacement_of_poses(), unmodelled.displacement]
-            .map(|size| track.systematic(size * track.reference().radius, track.span_of_motion(None)));
+        let sizes = [unmodelled.displacement_of_poses(), unmodelled.displacement];
+        let sizes = sizes.map(|size| size * track.reference().radius);
+        let [pose, motion] = track.systematic(sizes, track.span_of_motion(None));
         of_pose.zip_apply(&pose, |all, of_model| *all = all.hypot(of_model));
         of_motion.zip_apply(&motion, |all, of_model| *all = all.hypot(of_model));
         let [of_place, of_velocity] = track.shift_by_light(unmodelled);

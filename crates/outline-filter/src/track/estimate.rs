@@ -65,26 +65,27 @@ impl Track {
         [of_shift(Matrix2::identity() - linear), of_shift(rates.fixed_view::<2, 2>(0, 0).into_owned())]
     }
 
-    /// What an error of the whole outline, of a size in image lengths and of its own in every frame, makes of pose and motion: deviations
-    /// about the centroid, normalised. Over the `span` that the motion is known from it may change by as much as it is.
-    pub(crate) fn systematic(&self, size: f64, span: f64) -> [CentredDeviations; 2] {
-        if size <= 0.0 {
+    /// What errors of the whole outline, of sizes in image lengths for poses and motions, and of their own in every frame, make of pose and motion:
+    /// deviations about the centroid, normalised. Over the `span` that the motion is known from they may change by as much as they are.
+    pub(crate) fn systematic(&self, sizes: [f64; 2], span: f64) -> [CentredDeviations; 2] {
+        if sizes.iter().all(|size| *size <= 0.0) {
             return [CentredDeviations::zeros(); 2];
         }
         let (model, k) = (self.belief.model, self.belief.parameter_count());
-        let size = size / self.reference.radius;
         let cells = self.map.cells();
         let mut levers = [0.0; MAX_PARAMETERS];
         for cell in cells {
             let along = model.normal_velocities(&(cell.centre - self.map.centroid().coords), &cell.normal);
             levers.iter_mut().zip(along).for_each(|(sum, v)| *sum += v * v / cells.len() as f64);
         }
-        let pose = CentredDeviations::from_fn(|j, _| {
-            let lever = if j < k { levers[centred_order(model)[j]].sqrt() } else { 0.0 };
-            // Half of an error of one side is a shift; what an outline hardly shows may be anything.
-            if lever > 0.0 { (0.5 * size / lever).min(1.0) } else { 0.0 }
+        let [pose, motion] = sizes.map(|size| size / self.reference.radius).map(|size| {
+            CentredDeviations::from_fn(|j, _| {
+                let lever = if j < k { levers[centred_order(model)[j]].sqrt() } else { 0.0 };
+                // Half of an error of one side is a shift; what an outline hardly shows may be anything.
+                if lever > 0.0 { (0.5 * size / lever).min(1.0) } else { 0.0 }
+            })
         });
-        [pose, pose * (std::f64::consts::SQRT_2 / span)]
+        [pose, motion * (std::f64::consts::SQRT_2 / span)]
     }
 
     /// Time that the motion is known from, in the filter's unit; positive. It is that of as many steps as the hypotheses of dynamics remember, and

@@ -50,7 +50,7 @@ impl Track {
         };
         let cells = self.map.cells();
         let share = cells.iter().filter(|cell| along(&cell.normal)).count() as f64 / cells.len().max(1) as f64;
-        let [pose, _] = self.systematic(side * share * self.reference.radius, self.span_of_motion(None));
+        let [pose, _] = self.systematic([side * share * self.reference.radius; 2], self.span_of_motion(None));
         pose
     }
 

@@ -232,7 +232,8 @@ impl Track {
         (noise, correlation): (Option<f64>, Option<ShownCorrelation>),
         share: f64,
     ) {
-        if self.displacement_from(&self.first_pose.pose) > of_noise::ANOTHER_PLACE {
+        if self.noise.is_seen_in_one_place() && self.displacement_from(&self.first_pose.pose) > of_noise::ANOTHER_PLACE
+        {
             self.noise.see_elsewhere();
         }
         if let Some(noise) = noise {

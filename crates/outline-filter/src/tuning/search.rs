@@ -61,6 +61,8 @@ pub(crate) mod groupwise {
     pub(crate) const LARGEST_ORDER: usize = 12;
     /// Halvings of the steps that turn and path are refined by.
     pub(crate) const HALVINGS: usize = 8;
+    /// Steps of a size in each rate at most: no more than leads from one turn that is tried to the next.
+    pub(crate) const STEPS_OF_A_SIZE: usize = 4;
 }
 
 /// Global registration: the object looked for without a guess.
