@@ -18,6 +18,7 @@ use super::{
     setting::{Dynamics, DynamicsWeights},
     steady_change::SteadyChange,
     step::Step,
+    usual_step::UsualStep,
 };
 #[cfg(feature = "serde")]
 use crate::tuning::saved_state::SUM_OFF;
@@ -51,6 +52,7 @@ pub(crate) struct InteractingHypotheses<const N: usize> {
     pub(super) reference: CentredPose,
     /// Variance of a pose as one frame tells it.
     pub(super) pose_variance: CentredVector,
+    pub(super) usual_step: UsualStep,
     pub(super) common: CommonError,
     series: InnovationSeries<LARGEST>,
     /// Factor of the variance of a pose by the most probable hypothesis.
@@ -102,6 +104,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             recent_weights: [0.0; MOST],
             reference,
             pose_variance,
+            usual_step: UsualStep::of(seconds),
             common,
             series: InnovationSeries::default(),
             shaking: 1.0,
@@ -116,7 +119,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             filter.hypotheses.push(hypothesis);
         }
         filter.normalise();
-        filter.reckon_with_change(seconds);
+        filter.reckon_with_change();
         if setting != Dynamics::Auto && setting != Dynamics::Generator {
             filter.lead_from_now_on();
         }
@@ -138,12 +141,12 @@ impl<const N: usize> InteractingHypotheses<N> {
     }
 
     /// Begins to reckon with a steady change where the motion is constant: from the beginning, and after it has been seen to change.
-    fn reckon_with_change(&mut self, seconds: f64) {
+    fn reckon_with_change(&mut self) {
         let DynamicsWeights { generator, velocity, .. } = self.weights();
         if self.setting == Dynamics::Auto && self.steady_change.is_none() && generator + velocity >= tuning::LEADS_UNTIL
         {
             let constant = self.hypotheses.iter().find(|hypothesis| hypothesis.course == Course::ConstantGenerator);
-            let units = (&self.pose_variance, seconds);
+            let units = (&self.pose_variance, self.usual_step.seconds());
             self.steady_change =
                 constant.map(|constant| SteadyChange::begin(self.model, (constant.mean, constant.covariance), units));
         }
@@ -166,7 +169,8 @@ impl<const N: usize> InteractingHypotheses<N> {
             return false;
         }
         debug_assert!(self.arrivals.is_empty(), "the step before has not ended");
-        self.reckon_with_change(seconds);
+        let steps = self.usual_step.follow(seconds);
+        self.reckon_with_change();
         let moved = CentredPose { pose: self.reference.pose, centroid: self.place_centroid(&pose.centroid) };
         let (model, reference) = (self.model, self.reference);
         if moved.centroid != reference.centroid {
@@ -175,8 +179,10 @@ impl<const N: usize> InteractingHypotheses<N> {
         self.reference = moved;
         let to = CentredPose { pose: pose.pose, centroid: moved.centroid };
         let arrivals = self.leads.then_some(&mut self.arrivals);
-        mix(&mut self.hypotheses, &mut self.weights, self.model, (&self.pose_variance, seconds), arrivals);
-        let step = Step::new((self.model, seconds), [&self.reference, &to], &self.pose_variance);
+        let units = (&self.pose_variance, self.usual_step.seconds());
+        mix(&mut self.hypotheses, &mut self.weights, self.model, (units, steps), arrivals);
+        let step = Step::new((self.model, seconds), [&self.reference, &to], &self.pose_variance)
+            .map(|step| step.of_usual(steps));
         let possible = step.is_some_and(|step| {
             let fails = |change: &mut SteadyChange<N>| change.hypotheses().iter_mut().any(|h| !h.predict(&step));
             if self.steady_change.as_mut().is_some_and(fails) {
@@ -353,6 +359,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             && is_finite(self.reference.centroid.coords.as_slice())
             && self.centroid_now.is_none_or(|centroid| is_finite(centroid.coords.as_slice()))
             && self.pose_variance.iter().all(|variance| variance.is_finite() && *variance > 0.0)
+            && self.usual_step.is_valid()
             && self.steady_change.as_ref().is_none_or(SteadyChange::is_valid)
             && self.common.is_valid(model)
             && self.series.is_valid()

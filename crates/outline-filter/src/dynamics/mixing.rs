@@ -24,12 +24,13 @@ struct Pooled<const N: usize> {
 ///
 /// The probability of a change is that the one course is left, times the share of changes that lead to the other. Every mixture has
 /// two parts: the hypothesis itself, and all that have changed together. The state of those is that of all that leave their courses, wherever they
-/// lead. They are blended, or kept apart as `arrivals` where that is asked for and matters.
+/// lead. They are blended, or kept apart as `arrivals` where that is asked for and matters. Units are the variance of a pose and the seconds of a usual
+/// step, beside the number of these that the step takes the time of.
 pub(super) fn mix<const N: usize>(
     hypotheses: &mut [Hypothesis<N>],
     weights: &mut [f64],
     model: MotionModel,
-    units: (&CentredVector, f64),
+    (units, steps): ((&CentredVector, f64), f64),
     mut arrivals: Option<&mut Vec<Arrival<N>>>,
 ) {
     if hypotheses.len() < 2 {
@@ -41,7 +42,7 @@ pub(super) fn mix<const N: usize>(
     // Of those whose rates stay and of those whose rates change: all that leave their courses in this step, and the shares of all changes from one.
     let leaving_of = |of: Rates| {
         let sources = changing(hypotheses, weights).filter(|(hypothesis, _)| hypothesis.course.rates() == of);
-        sources.map(|(_, weight)| weight).sum::<f64>()
+        steps * sources.map(|(_, weight)| weight).sum::<f64>()
     };
     let shares_of =
         |from: Rates| hypotheses.iter().map(|hypothesis| share_of_changes::<N>(from, hypothesis.course)).sum::<f64>();
@@ -59,13 +60,13 @@ pub(super) fn mix<const N: usize>(
             Rates::Stay => from_steady,
             Rates::ChangeAtRandom => from_varying,
         };
-        let stays = *weight * (1.0 - shares * leaving(course));
+        let stays = *weight * (1.0 - steps * shares * leaving(course));
         let taken = steady * share_of_changes::<N>(Rates::Stay, course)
             + varying * share_of_changes::<N>(Rates::ChangeAtRandom, course);
         *weight = taken + stays;
         let share = taken / *weight;
         match &mut arrivals {
-            Some(arrivals) if widens(hypothesis, of_all, share, units) => {
+            Some(arrivals) if widens(hypothesis, of_all, share, (units, steps)) => {
                 arrivals.push(Arrival { number, share, state: of_all.as_state_of(hypothesis, model, units) });
             }
             _ if hypothesis.shared() < hypothesis.size() => {
@@ -87,9 +88,9 @@ fn widens<const N: usize>(
     hypothesis: &Hypothesis<N>,
     of_all: &Pooled<N>,
     share: f64,
-    (pose_variance, seconds): (&CentredVector, f64),
+    ((pose_variance, usual), steps): ((&CentredVector, f64), f64),
 ) -> bool {
-    let k = N / 3;
+    let (k, seconds) = (N / 3, steps * usual);
     (0..k).any(|j| {
         let expected = |covariance: &SMatrix<f64, N, N>| {
             covariance[(j, j)] + 2.0 * seconds * covariance[(j, k + j)] + seconds * seconds * covariance[(k + j, k + j)]
@@ -305,7 +306,7 @@ mod tests {
         let left = courses.map(|course| {
             let mut hypotheses = courses.map(of_course::<9>);
             let mut weights = courses.map(|other| f64::from(u8::from(other == course)));
-            mix(&mut hypotheses, &mut weights, MotionModel::Rigid, (&CentredVector::repeat(1e-4), 0.1), None);
+            mix(&mut hypotheses, &mut weights, MotionModel::Rigid, ((&CentredVector::repeat(1e-4), 0.1), 1.0), None);
             assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{weights:?}");
             assert!(weights.iter().all(|weight| *weight > 0.0), "{weights:?}");
             let camera = 3;
@@ -329,7 +330,7 @@ mod tests {
         let courses = Course::all_of(Dynamics::Auto);
         let mut hypotheses: Vec<_> = courses.iter().copied().map(of_course::<N>).collect();
         let mut weights: Vec<_> = courses.iter().map(|course| f64::from(u8::from(*course == leaves))).collect();
-        mix(&mut hypotheses, &mut weights, model, (&CentredVector::repeat(1e-4), 0.1), None);
+        mix(&mut hypotheses, &mut weights, model, ((&CentredVector::repeat(1e-4), 0.1), 1.0), None);
         assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{model:?}: {weights:?}");
         courses.into_iter().zip(weights).collect()
     }
@@ -376,9 +377,9 @@ mod tests {
             .collect();
         let begun: Vec<f64> = before.iter().map(|_| 1.0 / before.len() as f64).collect();
         let (mut mixed, mut weights) = (before.clone(), begun.clone());
-        mix(&mut mixed, &mut weights, model, (&units, 0.1), None);
+        mix(&mut mixed, &mut weights, model, ((&units, 0.1), 1.0), None);
         let (mut apart, mut weights_apart, mut arrivals) = (before.clone(), begun, Vec::new());
-        mix(&mut apart, &mut weights_apart, model, (&units, 0.1), Some(&mut arrivals));
+        mix(&mut apart, &mut weights_apart, model, ((&units, 0.1), 1.0), Some(&mut arrivals));
         assert!(arrivals.len() > before.len() / 2, "{}", arrivals.len());
         assert_eq!(weights, weights_apart);
         for Arrival { number, .. } in &arrivals {
@@ -405,7 +406,7 @@ mod tests {
         let before = [of(1e-5, 0.3, 1.0), of(1e-2, -0.2, 2.0), of(1e1, 1.0, 0.5)];
         let weights_before = [0.5, 0.3, 0.2];
         let (mut after, mut weights) = (before.clone(), weights_before);
-        mix(&mut after, &mut weights, MotionModel::Rigid, (&CentredVector::repeat(1e-4), 0.1), None);
+        mix(&mut after, &mut weights, MotionModel::Rigid, ((&CentredVector::repeat(1e-4), 0.1), 1.0), None);
         let change = tuning::LEAVES_CHANGING;
         for (j, mixed) in after.iter().enumerate() {
             // Equation 68: of hypothesis i comes what has left it for j, and of j itself what has stayed.

@@ -34,6 +34,7 @@ mod to_and_fro;
 mod turned_chains;
 mod turned_motion;
 mod unmodelled_estimate;
+mod usual_step;
 mod wrong_family;
 
 pub(crate) use centred::{CentredDeviations, CentredPose, Summary, centred_order, centred_velocity};

@@ -20,7 +20,8 @@ pub(super) struct Step<'a> {
     pub(super) centre: Vector2<f64>,
     /// Variance of a pose as one frame tells it, of every parameter.
     pub(super) pose_variance: &'a CentredVector,
-    /// What accelerations that change at random add to errors, motions and accelerations: parts of a variance over the fifth power of a step.
+    /// What accelerations that change at random add to errors, motions and accelerations: parts of a variance over the fifth power of a
+    /// usual step.
     pub(super) by_change: [[f64; 3]; 3],
 }
 
@@ -48,6 +49,13 @@ impl<'a> Step<'a> {
         ];
         let centre = from.centre() - to.centre();
         Some(Self { model, seconds, turned, turned_by, local, centre, pose_variance, by_change })
+    }
+
+    /// As one that takes the time of so many [usual steps](super::usual_step::UsualStep), in which accelerations change for as long.
+    pub(super) fn of_usual(mut self, steps: f64) -> Self {
+        let longer = steps.powi(5);
+        self.by_change.as_flattened_mut().iter_mut().for_each(|share| *share *= longer);
+        self
     }
 
     /// Propagation of the N = 3 k errors of a hypothesis, as far as it is that of the pose by itself, where the rates stay and its centroid

@@ -71,6 +71,12 @@ pub(crate) mod dynamics {
     pub(crate) const LEAVES_CONSTANT: f64 = 0.000_000_5;
     /// As that, of a motion that changes already: most of those go on to.
     pub(crate) const LEAVES_CHANGING: f64 = 0.000_15;
+    /// The usual step becomes by no more than this shorter, or longer, with one that is: half as long, as the first step may be one over a gap; and longer
+    /// by so little that gaps between frames do not become usual, and steps that differ by as much are all usual ones.
+    pub(crate) const SHORTER: f64 = 0.5;
+    pub(crate) const LONGER: f64 = 1.0625;
+    /// Steps over which changes are reckoned with at most: over more, nothing is known of a motion that changes.
+    pub(crate) const MOST_STEPS: f64 = 100.0;
     /// How often a motion that changes becomes constant, for one change of how it changes. A body that swings looks for three or four frames at its
     /// turning points like one of a constant motion, and every frame of that speaks for it by up to sixty to one.
     pub(crate) const BECOMES_CONSTANT: f64 = 0.1;

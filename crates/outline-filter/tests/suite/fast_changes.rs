@@ -188,3 +188,35 @@ fn a_body_that_is_pushed_is_followed_though_errors_of_its_edges_stood_still_whil
         assert!(rejected <= 3, "seed {seed}: {rejected}");
     }
 }
+
+/// Levels of hypotheses were those of each step: over a gap of 17 frames an acceleration was taken to change as in one. Values of the first frames
+/// after it were up to 80 deviations off.
+#[test]
+fn a_body_that_swings_is_within_its_deviations_in_the_first_frames_after_a_gap() {
+    let [mut stated, mut held] = [0, 0];
+    for seed in 0..12 {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let number = f64::from(u32::try_from(seed).expect("a small number"));
+        let (amplitude, pace, phase) = (0.3 + 0.04 * number, 3.0 + 0.25 * number, 0.5 * number);
+        let angle = |time: f64| amplitude * (pace * time + phase).sin();
+        let rate = |time: f64| amplitude * pace * (pace * time + phase).cos();
+        let (after, mut run) = (36 + seed % 12, filter(MotionModel::Rigid));
+        for frame in (0..30).chain(after..after + 3) {
+            let time = f64::from(u32::try_from(frame).expect("a small number")) / 30.0;
+            // Hung from a point five radii above its centre.
+            let pose = Rotation2::new(angle(time));
+            let at_origin = bent_outline(angle(time), 0.002, &mut random, |_, _| 0.0);
+            let outline = at_origin.mapped(|p| p + pose * Vector2::new(0.0, -5.0)).expect("an outline");
+            run.step(time, &outline).expect("increasing times");
+            let spin = run.estimate().filter(|_| frame >= after).and_then(|estimate| estimate.parameters().next());
+            if let Some((value, deviation)) = spin.and_then(|spin| spin.value.zip(spin.standard_deviation)) {
+                stated += 1;
+                // omega is positive clockwise.
+                let off = (value + rate(time)).abs() / deviation;
+                assert!(off < 5.0, "seed {seed}, frame {frame}: {value} +- {deviation}, {off} deviations off");
+                held += u32::from(off < 2.0);
+            }
+        }
+    }
+    assert!(stated >= 12 && held * 100 > stated * 85, "{stated} stated, {held} within two deviations");
+}
