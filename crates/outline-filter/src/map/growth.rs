@@ -7,6 +7,24 @@ use super::{
 };
 use crate::tuning::map as tuning;
 
+/// What becomes of a part of a contour that leaves the known outline where that is known to go on otherwise.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Detours {
+    /// It is added: one of the two was hidden, or is no more there.
+    Added,
+    /// It is left out: what touches the object shows nothing of it.
+    LeftOut,
+}
+
+/// Places of a contour, one after the other, that no cell covers.
+struct Run<'a> {
+    places: Vec<&'a Place>,
+    /// Whether they are all of a closed contour.
+    closed: bool,
+    /// The cells that cover the places before and behind it.
+    ends: [Option<usize>; 2],
+}
+
 impl Cell {
     fn at(place: &Place, neighbours: [usize; 2]) -> Self {
         let Place { centre, normal } = *place;
@@ -18,7 +36,13 @@ impl OutlineMap {
     /// Adds cells for the parts of contours in the body frame, with noise of deviation `sigma` there, that no cell covers with its
     /// outline at the given offset. Number of the first new cell; `None` where there is none. Points can be associated with new cells once
     /// that [has been prepared](Self::prepare_association).
-    pub(crate) fn grow(&mut self, contours: Vec<Contour>, sigma: f64, offsets: &[f64]) -> Option<usize> {
+    pub(crate) fn grow(
+        &mut self,
+        contours: Vec<Contour>,
+        sigma: f64,
+        offsets: &[f64],
+        detours: Detours,
+    ) -> Option<usize> {
         let first_new = self.cells.len();
         let resampled = |mut contour: Contour| contour.resampled(sigma, self.half_window, self.spacing);
         let pieces: Vec<_> = contours.into_iter().filter_map(resampled).collect();
@@ -27,67 +51,91 @@ impl OutlineMap {
         if first_new >= tuning::MOST_TIMES_SEEN * self.most_seen {
             return None;
         }
-        pieces.iter().for_each(|piece| self.add_places(piece, first_new, offsets));
+        let runs: Vec<_> = pieces.iter().flat_map(|piece| self.new_runs(piece, first_new, offsets)).collect();
+        let is_touched = detours == Detours::LeftOut && runs.iter().any(|run| self.is_detour(run));
+        // What lies apart may be of what touches the object as well.
+        let is_of_object = |run: &Run<'_>| !is_touched || run.ends.iter().any(Option::is_some) && !self.is_detour(run);
+        let runs: Vec<_> = runs.into_iter().filter(is_of_object).collect();
+        runs.iter().for_each(|run| self.add(run));
         (self.cells.len() > first_new).then_some(first_new)
     }
 
-    /// Appends the runs of places that no cell covers, linked along the contour.
-    fn add_places(&mut self, piece: &SmoothPiece, first_new: usize, offsets: &[f64]) {
+    /// The runs of places of a contour that no cell older than `first_new` covers.
+    fn new_runs<'a>(&self, piece: &'a SmoothPiece, first_new: usize, offsets: &[f64]) -> Vec<Run<'a>> {
         let count = piece.places.len();
         let covering: Vec<Option<usize>> =
             piece.places.iter().map(|place| self.covering(&place.centre, first_new, offsets)).collect();
         let new = |i: usize| covering[i].is_none();
-        if !(0..count).any(new) {
-            return;
-        }
         if (0..count).all(new) {
-            let base = self.cells.len();
-            for (i, place) in piece.places.iter().enumerate() {
-                let neighbours = if piece.closed {
-                    [base + (i + count - 1) % count, base + (i + 1) % count]
-                } else {
-                    [base + i.saturating_sub(1), base + (i + 1).min(count - 1)]
-                };
-                self.cells.push(Cell::at(place, neighbours));
-            }
-            return;
+            return vec![Run { places: piece.places.iter().collect(), closed: piece.closed, ends: [None; 2] }];
         }
         // Start behind a covered place, so that no run wraps around.
         let start = if piece.closed { (0..count).find(|i| !new(*i)).unwrap_or(0) } else { 0 };
         let order: Vec<usize> = (0..count).map(|i| (start + i) % count).collect();
-        for run in order.chunk_by(|a, b| new(*a) == new(*b)) {
-            if !new(run[0]) || run.len() < tuning::SHORTEST_RUN {
-                continue;
-            }
-            let base = self.cells.len();
-            for (i, place) in run.iter().map(|i| &piece.places[*i]).enumerate() {
-                let neighbours = [base + i.saturating_sub(1), base + (i + 1).min(run.len() - 1)];
-                self.cells.push(Cell::at(place, neighbours));
-            }
+        let runs = order.chunk_by(|a, b| new(*a) == new(*b));
+        let of_new = runs.filter(|run| new(run[0]) && run.len() >= tuning::SHORTEST_RUN).map(|run| {
             let (head, tail) = (run[0], run[run.len() - 1]);
-            let before = (piece.closed || head != 0).then(|| covering[(head + count - 1) % count]).flatten();
-            self.link(before, base, 0);
-            let after = (tail + 1 < count || piece.closed).then(|| covering[(tail + 1) % count]).flatten();
-            let last = self.cells.len() - 1;
-            self.link(after, last, 1);
+            let before = (piece.closed || head != 0).then(|| covering[(head + count - 1) % count]);
+            let after = (piece.closed || tail + 1 < count).then(|| covering[(tail + 1) % count]);
+            let places = run.iter().map(|i| &piece.places[*i]).collect();
+            Run { places, closed: false, ends: [before.flatten(), after.flatten()] }
+        });
+        of_new.collect()
+    }
+
+    /// Appends cells for a run, linked along the contour.
+    fn add(&mut self, Run { places, closed, ends: [before, after] }: &Run<'_>) {
+        let (base, count) = (self.cells.len(), places.len());
+        for (i, place) in places.iter().enumerate() {
+            let neighbours = if *closed {
+                [base + (i + count - 1) % count, base + (i + 1) % count]
+            } else {
+                [base + i.saturating_sub(1), base + (i + 1).min(count - 1)]
+            };
+            self.cells.push(Cell::at(place, neighbours));
         }
+        self.link(*before, base, 0);
+        self.link(*after, base + count - 1, 1);
+    }
+
+    /// Whether a run leaves the known outline, or comes to it, where that goes on otherwise for longer than the run reaches. What comes into view
+    /// at an end of it has no more than passed that.
+    fn is_detour(&self, run: &Run<'_>) -> bool {
+        let [first, last] = [run.places.first(), run.places.last()];
+        let reach = first.zip(last).map_or(0.0, |(first, last)| (last.centre - first.centre).norm());
+        let most = (reach / self.spacing) as usize + tuning::BESIDE_END;
+        let [before, after] = run.ends;
+        [(before, 1), (after, 0)].into_iter().any(|(end, side)| end.is_some_and(|end| !self.ends_soon(end, side, most)))
+    }
+
+    /// Whether the known outline ends within so many cells on from one of them.
+    fn ends_soon(&self, mut here: usize, side: usize, most: usize) -> bool {
+        (0..=most).any(|_| {
+            let next = self.cells[here].neighbours[side];
+            next == std::mem::replace(&mut here, next)
+        })
     }
 
     /// Joins a new end cell to the end of the known outline next to it.
     fn link(&mut self, old: Option<usize>, new: usize, side: usize) {
-        let Some(mut old) = old else { return };
-        // The free end is at most a few cells on.
-        for _ in 0..4 {
-            if let Some(free) = (0..2).find(|s| self.cells[old].neighbours[*s] == old) {
-                self.cells[old].neighbours[free] = new;
-                self.cells[new].neighbours[side] = old;
-                return;
-            }
-            let target = self.cells[new].centre;
-            let distance = |n: &usize| (self.cells[*n].centre - target).norm_squared();
-            let [a, b] = self.cells[old].neighbours;
-            old = if distance(&a) < distance(&b) { a } else { b };
+        let centre = self.cells[new].centre;
+        if let Some((old, free)) = old.and_then(|old| self.free_end_near(old, &centre)) {
+            self.cells[old].neighbours[free] = new;
+            self.cells[new].neighbours[side] = old;
         }
+    }
+
+    /// The end of the known outline that lies a few cells on from one of them towards a place, and its free side.
+    fn free_end_near(&self, mut known: usize, place: &Point2<f64>) -> Option<(usize, usize)> {
+        for _ in 0..tuning::BESIDE_END {
+            let [a, b] = self.cells[known].neighbours;
+            if let Some(free) = [a, b].iter().position(|neighbour| *neighbour == known) {
+                return Some((known, free));
+            }
+            let distance = |n: usize| (self.cells[n].centre - place).norm_squared();
+            known = if distance(a) < distance(b) { a } else { b };
+        }
+        None
     }
 
     /// The cell that covers a place, among those older than `first_new`.

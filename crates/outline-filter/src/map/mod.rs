@@ -26,6 +26,7 @@ mod turn_evidence;
 pub(crate) use chains::{CellPoint, has_common_places};
 pub(crate) use contour::Contour;
 pub(crate) use contour_area::centroid_within;
+pub(crate) use growth::Detours;
 pub(crate) use medians::{median, median_about};
 pub(crate) use null_directions::{NullDirection, NullDirections};
 pub(crate) use null_space::{CLOCKWISE, map_between};

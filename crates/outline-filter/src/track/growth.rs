@@ -7,7 +7,7 @@ use nalgebra::Matrix3;
 use super::{Track, body_frame::of_pose};
 use crate::{
     belief::StateVector,
-    map::{CellsInCommon, Contour, NullDirections, TurnEvent},
+    map::{CellsInCommon, Contour, Detours, NullDirections, TurnEvent},
     measurement::{Frame, NO_CELL, Pass},
     tuning::update::DEVIATIONS_PER_CELL,
     update::accumulate,
@@ -69,11 +69,13 @@ impl Track {
         let null_in_body = self.map.null_directions(model, &Matrix3::identity());
         let turn_was_unseen = self.turn_is_unseen();
         let before = (!null.is_empty()).then(|| Arc::clone(&self.map));
+        // What passes by a bar that reaches across the picture, and touches it, would show how the bar moves along itself.
+        let detours = if null.is_empty() { Detours::Added } else { Detours::LeftOut };
         let map = Arc::make_mut(&mut self.map);
         // Of the body frame. New cells come from points of this frame alone, and the others do not.
         let sigma = self.noise.sigma / self.belief.scale();
         let of_frame = sigma * frame.deviations.typical();
-        let grown = map.grow(contours, of_frame, &self.belief.offsets).filter(|first_new| {
+        let grown = map.grow(contours, of_frame, &self.belief.offsets, detours).filter(|first_new| {
             map.find_null_directions(model, sigma, self.belief.known_offsets());
             map.are_shown_by_new(model, *first_new, &null_in_body)
         });

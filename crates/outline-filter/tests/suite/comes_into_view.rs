@@ -130,3 +130,62 @@ fn bodies_whose_ends_come_into_view_are_where_and_as_fast_as_is_stated_or_that_i
     // Of 48 recordings 38: seven or fewer of twelve are one in ten by chance.
     assert!(known_at_end >= 8, "{known_at_end}");
 }
+
+/// The two sides of a bar that reaches across a picture, upwards on the right, with what a disc beside it adds that lies at a height, and reaches over
+/// both sides where it touches the bar.
+fn bar_with_disc(height: f64, random: &mut ChaCha8Rng) -> Outline {
+    const HALF_WIDTH: f64 = 6.0;
+    const RADIUS: f64 = 25.0;
+    const HALF_HEIGHT: f64 = 150.0;
+    let reach = (RADIUS.powi(2) - HALF_WIDTH.powi(2)).sqrt();
+    let mut side = |direction: f64| {
+        let shift = random.random::<f64>();
+        let mut y = -HALF_HEIGHT + SPACING * shift;
+        let mut points = Vec::new();
+        while y < HALF_HEIGHT {
+            if (y - height).abs() < reach {
+                // Around the disc, which begins at this height.
+                let begin = (reach / HALF_WIDTH).atan();
+                let steps = (2.0 * begin * RADIUS / SPACING) as u32;
+                let angles = (0..=steps).map(|j| begin * (2.0 * f64::from(j) / f64::from(steps) - 1.0));
+                points.extend(angles.map(|a| Vector2::new(RADIUS * a.cos(), height + RADIUS * a.sin())));
+                y = height + reach + SPACING;
+            } else {
+                points.push(Vector2::new(HALF_WIDTH, y));
+                y += SPACING;
+            }
+        }
+        // The other side is this one, turned by half a turn about the origin, but for the height of the disc.
+        if direction < 0.0 {
+            points.reverse();
+        }
+        let noisy = points.into_iter().map(|p| {
+            Point2::from(
+                Vector2::new(direction * p.x, p.y).map(|c| c + NOISE * random.sample::<f64, _>(StandardNormal)),
+            )
+        });
+        OpenArc::new(noisy.collect()).expect("an arc")
+    };
+    let arcs = [1.0, -1.0].map(&mut side);
+    Outline::Open(OpenOutline::new(arcs.to_vec()).expect("arcs"))
+}
+
+/// The disc was learnt into the outline of the bar, which then went along itself with it: at 60 pixels per second, known to some.
+#[test]
+fn a_bar_across_the_picture_is_not_said_to_move_along_itself_with_what_passes_by_and_touches_it() {
+    for seed in 0..4 {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut run = filter(MotionModel::Rigid);
+        let mut across = None;
+        for frame in 0..FRAMES {
+            // In view from the tenth frame on, and touching at once, as what comes from aside.
+            let height = if frame < 10 { f64::INFINITY } else { -30.0 + 2.0 * f64::from(frame - 10) };
+            let step = run.step(f64::from(frame) / FRAME_RATE, &bar_with_disc(height, &mut random));
+            step.expect("increasing times");
+            let velocity = run.estimate().map(|estimate| estimate.parameters().map(|p| p.value).collect::<Vec<_>>());
+            assert!(velocity.as_ref().is_none_or(|v| v[2].is_none()), "seed {seed}, frame {frame}: {velocity:?}");
+            across = velocity.and_then(|v| v[1]);
+        }
+        assert!(across.is_some_and(|b1| b1.abs() < 1.0), "seed {seed}: {across:?}");
+    }
+}
