@@ -18,7 +18,7 @@ use super::{
     setting::{Dynamics, DynamicsWeights},
     steady_change::SteadyChange,
     step::Step,
-    usual_step::UsualStep,
+    usual_step::{Units, UsualStep},
 };
 #[cfg(feature = "serde")]
 use crate::tuning::saved_state::SUM_OFF;
@@ -179,10 +179,10 @@ impl<const N: usize> InteractingHypotheses<N> {
         self.reference = moved;
         let to = CentredPose { pose: pose.pose, centroid: moved.centroid };
         let arrivals = self.leads.then_some(&mut self.arrivals);
-        let units = (&self.pose_variance, self.usual_step.seconds());
-        mix(&mut self.hypotheses, &mut self.weights, self.model, (units, steps), arrivals);
+        let units = Units { pose_variance: &self.pose_variance, usual: self.usual_step.seconds(), steps };
+        mix(&mut self.hypotheses, &mut self.weights, self.model, units, arrivals);
         let step = Step::new((self.model, seconds), [&self.reference, &to], &self.pose_variance)
-            .map(|step| step.of_usual(steps));
+            .map(|step| step.of_usual(steps, self.usual_step.seconds()));
         let possible = step.is_some_and(|step| {
             let fails = |change: &mut SteadyChange<N>| change.hypotheses().iter_mut().any(|h| !h.predict(&step));
             if self.steady_change.as_mut().is_some_and(fails) {

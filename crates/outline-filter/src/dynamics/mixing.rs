@@ -5,10 +5,10 @@ use nalgebra::{SMatrix, SVector};
 use super::{
     accelerations::Accelerations,
     arrival::Arrival,
-    centred::CentredVector,
     course::{Course, Rates},
     hypothesis::Hypothesis,
     interacting::MOST,
+    usual_step::Units,
 };
 use crate::{tuning::dynamics as tuning, vectors::vectorised};
 
@@ -24,13 +24,12 @@ struct Pooled<const N: usize> {
 ///
 /// The probability of a change is that the one course is left, times the share of changes that lead to the other. Every mixture has
 /// two parts: the hypothesis itself, and all that have changed together. The state of those is that of all that leave their courses, wherever they
-/// lead. They are blended, or kept apart as `arrivals` where that is asked for and matters. Units are the variance of a pose and the seconds of a usual
-/// step, beside the number of these that the step takes the time of.
+/// lead. They are blended, or kept apart as `arrivals` where that is asked for and matters.
 pub(super) fn mix<const N: usize>(
     hypotheses: &mut [Hypothesis<N>],
     weights: &mut [f64],
     model: MotionModel,
-    (units, steps): ((&CentredVector, f64), f64),
+    units: Units<'_>,
     mut arrivals: Option<&mut Vec<Arrival<N>>>,
 ) {
     if hypotheses.len() < 2 {
@@ -42,7 +41,7 @@ pub(super) fn mix<const N: usize>(
     // Of those whose rates stay and of those whose rates change: all that leave their courses in this step, and the shares of all changes from one.
     let leaving_of = |of: Rates| {
         let sources = changing(hypotheses, weights).filter(|(hypothesis, _)| hypothesis.course.rates() == of);
-        steps * sources.map(|(_, weight)| weight).sum::<f64>()
+        units.steps * sources.map(|(_, weight)| weight).sum::<f64>()
     };
     let shares_of =
         |from: Rates| hypotheses.iter().map(|hypothesis| share_of_changes::<N>(from, hypothesis.course)).sum::<f64>();
@@ -60,13 +59,13 @@ pub(super) fn mix<const N: usize>(
             Rates::Stay => from_steady,
             Rates::ChangeAtRandom => from_varying,
         };
-        let stays = *weight * (1.0 - steps * shares * leaving(course));
+        let stays = *weight * (1.0 - units.steps * shares * leaving(course));
         let taken = steady * share_of_changes::<N>(Rates::Stay, course)
             + varying * share_of_changes::<N>(Rates::ChangeAtRandom, course);
         *weight = taken + stays;
         let share = taken / *weight;
         match &mut arrivals {
-            Some(arrivals) if widens(hypothesis, of_all, share, (units, steps)) => {
+            Some(arrivals) if widens(hypothesis, of_all, share, units) => {
                 arrivals.push(Arrival { number, share, state: of_all.as_state_of(hypothesis, model, units) });
             }
             _ if hypothesis.shared() < hypothesis.size() => {
@@ -88,7 +87,7 @@ fn widens<const N: usize>(
     hypothesis: &Hypothesis<N>,
     of_all: &Pooled<N>,
     share: f64,
-    ((pose_variance, usual), steps): ((&CentredVector, f64), f64),
+    Units { pose_variance, usual, steps }: Units<'_>,
 ) -> bool {
     let (k, seconds) = (N / 3, steps * usual);
     (0..k).any(|j| {
@@ -101,7 +100,7 @@ fn widens<const N: usize>(
     })
 }
 
-/// Probability, in a step, that a course is left for a certain other one.
+/// Probability, in a usual step, that a course is left for a certain other one.
 fn leaving(course: Course) -> f64 {
     match course {
         Course::ConstantVelocity { .. } if course.is_shaken() => tuning::LEAVES_CHANGING,
@@ -156,12 +155,7 @@ fn counting<'a, const N: usize>(
 impl<const N: usize> Pooled<N> {
     /// As the state of what has changed to a hypothesis. Of what its course has alone nothing is known, whatever it has been: a motion that has ended has
     /// left there what no longer holds.
-    fn as_state_of(
-        &self,
-        hypothesis: &Hypothesis<N>,
-        model: MotionModel,
-        units: (&CentredVector, f64),
-    ) -> Hypothesis<N> {
+    fn as_state_of(&self, hypothesis: &Hypothesis<N>, model: MotionModel, units: Units<'_>) -> Hypothesis<N> {
         let (course, shared) = (hypothesis.course, hypothesis.shared());
         let mean = SVector::from_fn(|i, _| if i < shared { self.mean[i] } else { 0.0 });
         let covariance = SMatrix::from_fn(|i, j| if i < shared && j < shared { self.covariance[(i, j)] } else { 0.0 });
@@ -171,16 +165,10 @@ impl<const N: usize> Pooled<N> {
     }
 
     /// Takes next to nothing to be known, in a share of a hypothesis, of what its course has alone, and of accelerations by those that have none.
-    fn add_unknown_to(
-        &self,
-        hypothesis: &mut Hypothesis<N>,
-        model: MotionModel,
-        units: (&CentredVector, f64),
-        share: f64,
-    ) {
+    fn add_unknown_to(&self, hypothesis: &mut Hypothesis<N>, model: MotionModel, units: Units<'_>, share: f64) {
         if hypothesis.course.has_more_than_motion() {
             let unknown = if hypothesis.shared() < hypothesis.size() { 1.0 } else { self.without };
-            hypothesis.add_unknown(model, units, share * unknown);
+            hypothesis.add_unknown(model, (units.pose_variance, units.usual), share * unknown);
         }
     }
 
@@ -285,7 +273,11 @@ impl<const N: usize> Pooled<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::{Dynamics, course::PointOfBody};
+    use crate::dynamics::{Dynamics, centred::CentredVector, course::PointOfBody};
+
+    fn units(pose_variance: &CentredVector, steps: f64) -> Units<'_> {
+        Units { pose_variance, usual: 0.1, steps }
+    }
 
     /// At rest, whatever its course.
     fn of_course<const N: usize>(course: Course) -> Hypothesis<N> {
@@ -306,7 +298,7 @@ mod tests {
         let left = courses.map(|course| {
             let mut hypotheses = courses.map(of_course::<9>);
             let mut weights = courses.map(|other| f64::from(u8::from(other == course)));
-            mix(&mut hypotheses, &mut weights, MotionModel::Rigid, ((&CentredVector::repeat(1e-4), 0.1), 1.0), None);
+            mix(&mut hypotheses, &mut weights, MotionModel::Rigid, units(&CentredVector::repeat(1e-4), 1.0), None);
             assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{weights:?}");
             assert!(weights.iter().all(|weight| *weight > 0.0), "{weights:?}");
             let camera = 3;
@@ -330,9 +322,28 @@ mod tests {
         let courses = Course::all_of(Dynamics::Auto);
         let mut hypotheses: Vec<_> = courses.iter().copied().map(of_course::<N>).collect();
         let mut weights: Vec<_> = courses.iter().map(|course| f64::from(u8::from(*course == leaves))).collect();
-        mix(&mut hypotheses, &mut weights, model, ((&CentredVector::repeat(1e-4), 0.1), 1.0), None);
+        mix(&mut hypotheses, &mut weights, model, units(&CentredVector::repeat(1e-4), 1.0), None);
         assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{model:?}: {weights:?}");
         courses.into_iter().zip(weights).collect()
+    }
+
+    #[test]
+    fn motions_change_over_a_gap_as_many_times_as_often_as_it_has_steps() {
+        let courses = Course::all_of(Dynamics::Auto);
+        let left_in = |steps: f64| {
+            let mut hypotheses: Vec<_> = courses.iter().copied().map(of_course::<9>).collect();
+            let mut weights = vec![0.0; courses.len()];
+            let changing = courses.len() - 1;
+            weights[changing] = 1.0;
+            mix(&mut hypotheses, &mut weights, MotionModel::Rigid, units(&CentredVector::repeat(1e-4), steps), None);
+            assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{weights:?}");
+            1.0 - weights[changing]
+        };
+        let of_one = left_in(1.0);
+        for steps in [0.2, 17.0, tuning::MOST_STEPS] {
+            let left = left_in(steps);
+            assert!((left / of_one - steps).abs() < 1e-6 * steps && left < 0.5, "{steps}: {left} {of_one}");
+        }
     }
 
     #[test]
@@ -362,7 +373,7 @@ mod tests {
 
     #[test]
     fn what_is_kept_apart_and_blended_at_once_is_what_is_mixed() {
-        let (units, model) = (CentredVector::repeat(1e-4), MotionModel::Rigid);
+        let (variance, model) = (CentredVector::repeat(1e-4), MotionModel::Rigid);
         let before: Vec<Hypothesis<9>> = Course::all_of(Dynamics::Auto)
             .into_iter()
             .zip(1..)
@@ -377,9 +388,9 @@ mod tests {
             .collect();
         let begun: Vec<f64> = before.iter().map(|_| 1.0 / before.len() as f64).collect();
         let (mut mixed, mut weights) = (before.clone(), begun.clone());
-        mix(&mut mixed, &mut weights, model, ((&units, 0.1), 1.0), None);
+        mix(&mut mixed, &mut weights, model, units(&variance, 1.0), None);
         let (mut apart, mut weights_apart, mut arrivals) = (before.clone(), begun, Vec::new());
-        mix(&mut apart, &mut weights_apart, model, ((&units, 0.1), 1.0), Some(&mut arrivals));
+        mix(&mut apart, &mut weights_apart, model, units(&variance, 1.0), Some(&mut arrivals));
         assert!(arrivals.len() > before.len() / 2, "{}", arrivals.len());
         assert_eq!(weights, weights_apart);
         for Arrival { number, .. } in &arrivals {
@@ -406,7 +417,7 @@ mod tests {
         let before = [of(1e-5, 0.3, 1.0), of(1e-2, -0.2, 2.0), of(1e1, 1.0, 0.5)];
         let weights_before = [0.5, 0.3, 0.2];
         let (mut after, mut weights) = (before.clone(), weights_before);
-        mix(&mut after, &mut weights, MotionModel::Rigid, ((&CentredVector::repeat(1e-4), 0.1), 1.0), None);
+        mix(&mut after, &mut weights, MotionModel::Rigid, units(&CentredVector::repeat(1e-4), 1.0), None);
         let change = tuning::LEAVES_CHANGING;
         for (j, mixed) in after.iter().enumerate() {
             // Equation 68: of hypothesis i comes what has left it for j, and of j itself what has stayed.

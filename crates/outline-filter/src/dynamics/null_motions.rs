@@ -32,11 +32,11 @@ impl<const N: usize> InteractingHypotheses<N> {
         if seconds <= 0.0 || self.turn_is_of_path {
             return;
         }
-        let (from, k) = (self.reference.about_centroid(self.model), self.model.parameter_count());
-        let pose_variance = self.pose_variance;
+        let from = self.reference.about_centroid(self.model);
+        let (pose_variance, usual) = (self.pose_variance, self.usual_step.seconds());
         for NullDirection { direction, .. } in directions {
             let direction = from * SVector::<f64, MAX_PARAMETERS>::from(*direction);
-            self.all().for_each(|hypothesis| hypothesis.forget(&direction, (&pose_variance, seconds), k));
+            self.all().for_each(|hypothesis| hypothesis.forget(&direction, (&pose_variance, usual), seconds));
         }
     }
 
@@ -60,10 +60,11 @@ impl<const N: usize> Hypothesis<N> {
     fn forget(
         &mut self,
         direction: &SVector<f64, MAX_PARAMETERS>,
-        (pose_variance, seconds): (&CentredVector, f64),
-        k: usize,
+        (pose_variance, usual): (&CentredVector, f64),
+        seconds: f64,
     ) {
-        let accelerations = self.course.acceleration_prior(pose_variance, k, seconds);
+        let k = Self::K;
+        let accelerations = self.course.acceleration_prior(pose_variance, k, usual);
         // Of a multiple of the direction, along which it is that of a vector of this length.
         let squared = direction.norm_squared();
         let of_acceleration = (0..k).map(|i| accelerations[i] * (direction[i] / squared).powi(2)).sum::<f64>();

@@ -40,21 +40,14 @@ impl<'a> Step<'a> {
             let by = model.motion_between(&as_map(&turned), 1.0)?;
             turned_by = CentredVector::from_fn(|j, _| by[j]);
         }
-        let (of_motion, of_acceleration) = (1.0 / (8.0 * seconds), 1.0 / (6.0 * seconds.powi(2)));
-        let of_both = 1.0 / (2.0 * seconds.powi(3));
-        let by_change = [
-            [1.0 / 20.0, of_motion, of_acceleration],
-            [of_motion, 1.0 / (3.0 * seconds.powi(2)), of_both],
-            [of_acceleration, of_both, 1.0 / seconds.powi(4)],
-        ];
+        let by_change = shares_of_change(1.0, seconds);
         let centre = from.centre() - to.centre();
         Some(Self { model, seconds, turned, turned_by, local, centre, pose_variance, by_change })
     }
 
-    /// As one that takes the time of so many [usual steps](super::usual_step::UsualStep), in which accelerations change for as long.
-    pub(super) fn of_usual(mut self, steps: f64) -> Self {
-        let longer = steps.powi(5);
-        self.by_change.as_flattened_mut().iter_mut().for_each(|share| *share *= longer);
+    /// As one of so many usual steps, of so many seconds each, over which accelerations change for as long.
+    pub(super) fn of_usual(mut self, steps: f64, usual: f64) -> Self {
+        self.by_change = shares_of_change(steps, usual);
         self
     }
 
@@ -85,6 +78,19 @@ impl<'a> Step<'a> {
     }
 }
 
+/// What accelerations that change at random add to errors, motions and accelerations over some steps of so many seconds: parts of a variance over the
+/// fifth power of one.
+fn shares_of_change(steps: f64, seconds: f64) -> [[f64; 3]; 3] {
+    let (fifth, time) = (steps.powi(5), steps * seconds);
+    let (of_motion, of_acceleration) = (fifth / (8.0 * time), fifth / (6.0 * time.powi(2)));
+    let of_both = fifth / (2.0 * time.powi(3));
+    [
+        [fifth / 20.0, of_motion, of_acceleration],
+        [of_motion, fifth / (3.0 * time.powi(2)), of_both],
+        [of_acceleration, of_both, fifth / time.powi(4)],
+    ]
+}
+
 /// How far a velocity takes an object over a step that is pushed on by one per second and turns with rates A beside that, from none: the integral of
 /// that of the turn, `sum of A^n dt^(n+2) / (n+2)!`. A step is of a turn or two at most.
 pub(super) fn pushed_along(rates: &Matrix2<f64>, seconds: f64) -> Matrix2<f64> {
@@ -104,4 +110,24 @@ pub(super) fn pushed_along(rates: &Matrix2<f64>, seconds: f64) -> Matrix2<f64> {
 /// turn.
 pub(super) fn turned_along(along: &Matrix2<f64>, seconds: f64) -> Matrix2<f64> {
     along - Matrix2::identity() * seconds
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn accelerations_change_over_a_gap_by_as_much_as_in_its_steps_one_after_the_other() {
+        const SECONDS: f64 = 1.0 / 30.0;
+        let transition =
+            nalgebra::Matrix3::new(1.0, SECONDS, 0.5 * SECONDS * SECONDS, 0.0, 1.0, SECONDS, 0.0, 0.0, 1.0);
+        let of = |steps: f64| nalgebra::Matrix3::from(shares_of_change(steps, SECONDS));
+        let mut one_by_one = nalgebra::Matrix3::zeros();
+        for steps in 1_u8..=17 {
+            one_by_one = transition * one_by_one * transition.transpose() + of(1.0);
+            let at_once = of(f64::from(steps));
+            let off = one_by_one.zip_map(&at_once, |a, b| (a / b - 1.0).abs()).max();
+            assert!(off < 1e-12, "{steps}: {one_by_one} {at_once}");
+        }
+    }
 }

@@ -1,5 +1,5 @@
 //! Cells added for what a frame shows for the first time.
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 
 use super::{
     Cell, Contour, OutlineMap,
@@ -7,12 +7,12 @@ use super::{
 };
 use crate::tuning::map as tuning;
 
-/// What becomes of a part of a contour that leaves the known outline where that is known to go on otherwise.
+/// What to do with a part of a contour that branches off the known outline although the outline goes on there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Detours {
     /// It is added: one of the two was hidden, or is no more there.
     Added,
-    /// It is left out: what touches the object shows nothing of it.
+    /// It is left out: it may belong to something that touches the object.
     LeftOut,
 }
 
@@ -52,11 +52,13 @@ impl OutlineMap {
             return None;
         }
         let runs: Vec<_> = pieces.iter().flat_map(|piece| self.new_runs(piece, first_new, offsets)).collect();
-        let is_touched = detours == Detours::LeftOut && runs.iter().any(|run| self.is_detour(run));
-        // What lies apart may be of what touches the object as well.
-        let is_of_object = |run: &Run<'_>| !is_touched || run.ends.iter().any(Option::is_some) && !self.is_detour(run);
-        let runs: Vec<_> = runs.into_iter().filter(is_of_object).collect();
-        runs.iter().for_each(|run| self.add(run));
+        let asked = |run: &Run<'_>| detours == Detours::LeftOut && self.is_detour(run);
+        let (left_out, mut taken): (Vec<_>, Vec<_>) = runs.into_iter().partition(asked);
+        if !left_out.is_empty() {
+            // What lies apart may be of what touches the object as well.
+            taken.retain(|run| run.ends.iter().any(Option::is_some));
+        }
+        taken.iter().for_each(|run| self.add(run));
         (self.cells.len() > first_new).then_some(first_new)
     }
 
@@ -98,20 +100,29 @@ impl OutlineMap {
         self.link(*after, base + count - 1, 1);
     }
 
-    /// Whether a run leaves the known outline, or comes to it, where that goes on otherwise for longer than the run reaches. What comes into view
-    /// at an end of it has no more than passed that.
+    /// Whether a run branches off the known outline where that goes on for longer than the run reaches along it: what comes into view at an end of
+    /// the outline has passed no more than that.
     fn is_detour(&self, run: &Run<'_>) -> bool {
-        let [first, last] = [run.places.first(), run.places.last()];
-        let reach = first.zip(last).map_or(0.0, |(first, last)| (last.centre - first.centre).norm());
-        let most = (reach / self.spacing) as usize + tuning::BESIDE_END;
-        let [before, after] = run.ends;
-        [(before, 1), (after, 0)].into_iter().any(|(end, side)| end.is_some_and(|end| !self.ends_soon(end, side, most)))
+        let (first, last) = (run.places[0], run.places[run.places.len() - 1]);
+        let across = last.centre - first.centre;
+        run.ends.into_iter().zip([(first, 1), (last, 0)]).any(|(end, (place, side))| {
+            let Some(end) = end else { return false };
+            let normal = &self.cells[end].normal;
+            let reach = Vector2::new(-normal.y, normal.x).dot(&across).abs();
+            let most = (reach / self.spacing) as usize + tuning::BESIDE_END;
+            // A contour may run the other way than the map.
+            let side = if place.normal.dot(normal) < 0.0 { 1 - side } else { side };
+            !self.ends_soon(end, side, most)
+        })
     }
 
-    /// Whether the known outline ends within so many cells on from one of them.
-    fn ends_soon(&self, mut here: usize, side: usize, most: usize) -> bool {
-        (0..=most).any(|_| {
-            let next = self.cells[here].neighbours[side];
+    /// Whether the known outline ends less than so many cells on from one of them.
+    fn ends_soon(&self, cell: usize, side: usize, most: usize) -> bool {
+        let (mut last, mut here) = (self.cells[cell].neighbours[1 - side], cell);
+        (0..most).any(|_| {
+            let [back, forth] = self.cells[here].neighbours;
+            let next = if back == last { forth } else { back };
+            last = here;
             next == std::mem::replace(&mut here, next)
         })
     }

@@ -69,7 +69,7 @@ impl Track {
         let null_in_body = self.map.null_directions(model, &Matrix3::identity());
         let turn_was_unseen = self.turn_is_unseen();
         let before = (!null.is_empty()).then(|| Arc::clone(&self.map));
-        // What passes by a bar that reaches across the picture, and touches it, would show how the bar moves along itself.
+        // What touches an object in passing would show what its outline does not, such as how a long bar moves along itself.
         let detours = if null.is_empty() { Detours::Added } else { Detours::LeftOut };
         let map = Arc::make_mut(&mut self.map);
         // Of the body frame. New cells come from points of this frame alone, and the others do not.

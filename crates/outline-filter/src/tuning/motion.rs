@@ -66,16 +66,17 @@ pub(crate) mod batch {
 
 /// Hypotheses of dynamics.
 pub(crate) mod dynamics {
-    /// Probability, in a step, that a constant motion changes to that of a certain other hypothesis: to all of them together, a change in 110,000 frames.
+    /// Probability, in a usual step, that a constant motion changes to that of a certain other hypothesis: to all of them together, a change in 110,000 frames.
     /// With a hundred times as much most sequences of a thousand frames were found to show a change by chance; a real one is seen a frame or two later.
     pub(crate) const LEAVES_CONSTANT: f64 = 0.000_000_5;
     /// As that, of a motion that changes already: most of those go on to.
     pub(crate) const LEAVES_CHANGING: f64 = 0.000_15;
-    /// The usual step becomes by no more than this shorter, or longer, with one that is: half as long, as the first step may be one over a gap; and longer
-    /// by so little that gaps between frames do not become usual, and steps that differ by as much are all usual ones.
-    pub(crate) const SHORTER: f64 = 0.5;
+    /// The usual step becomes by no more than this shorter, or longer, with one that is: by so little that gaps between frames do not become usual, and
+    /// that steps which differ by as much are all usual ones. Where the first steps are over gaps, some frames make up for that.
+    pub(crate) const SHORTER: f64 = 0.8;
     pub(crate) const LONGER: f64 = 1.0625;
-    /// Steps over which changes are reckoned with at most: over more, nothing is known of a motion that changes.
+    /// Usual steps over which changes are reckoned with at most: by then a motion that changes has gone anywhere. The probability of a change is that of a
+    /// step times their number, which must stay below 1.
     pub(crate) const MOST_STEPS: f64 = 100.0;
     /// How often a motion that changes becomes constant, for one change of how it changes. A body that swings looks for three or four frames at its
     /// turning points like one of a constant motion, and every frame of that speaks for it by up to sixty to one.

@@ -47,7 +47,8 @@ pub(crate) mod map {
     pub(crate) const MOST_TIMES_SEEN: usize = 8;
     /// Shortest run of new places that is taken: one alone is an outlier as often as not.
     pub(crate) const SHORTEST_RUN: usize = 2;
-    /// Cells on from the one that covers the last known place of a contour, towards what is new, within which the known outline has an end.
+    /// Cells on from the one that covers the last known place of a contour, towards what is new, among which an end of the known outline is looked for:
+    /// smoothing rounds a contour off over about so many beside its end.
     pub(crate) const BESIDE_END: usize = 4;
     /// Longest side of the picture of nearest cells, pixels, which are hardly larger than the cells of 400 points: to fill it was a third of the
     /// first frame with twice as many, and it stays within the first cache of a processor.

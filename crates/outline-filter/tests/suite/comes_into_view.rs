@@ -155,7 +155,7 @@ fn bar_with_disc(height: f64, random: &mut ChaCha8Rng) -> Outline {
                 y += SPACING;
             }
         }
-        // The other side is this one, turned by half a turn about the origin, but for the height of the disc.
+        // The other side is this one in a mirror, run the other way.
         if direction < 0.0 {
             points.reverse();
         }

@@ -190,7 +190,7 @@ fn a_body_that_is_pushed_is_followed_though_errors_of_its_edges_stood_still_whil
 }
 
 /// Levels of hypotheses were those of each step: over a gap of 17 frames an acceleration was taken to change as in one. Values of the first frames
-/// after it were up to 80 deviations off.
+/// after it were up to 56 deviations off.
 #[test]
 fn a_body_that_swings_is_within_its_deviations_in_the_first_frames_after_a_gap() {
     let [mut stated, mut held] = [0, 0];
