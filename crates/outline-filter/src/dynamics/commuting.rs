@@ -107,7 +107,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::dynamics::{CentredPose, centred::CentredVector, course::PointOfBody};
+    use crate::dynamics::{CentredPose, centred::CentredVector, course::PointOfBody, usual_step::Units};
 
     const COURSES: [Course; 10] = [
         Course::ConstantGenerator,
@@ -128,7 +128,8 @@ mod tests {
         let still = CentredPose { pose: Matrix3::identity(), centroid: Point2::origin() };
         let variance = CentredVector::repeat(1.0);
         let (seconds, omega, aside, straight) = (0.7, 2.0, Vector2::new(0.4, -0.1), Vector2::new(0.3, 0.5));
-        let step = Step::new((MotionModel::Rigid, seconds), [&still, &still], &variance).expect("poses");
+        let step = Step::new((MotionModel::Rigid, seconds), [&still, &still], Units::of_usual_step(&variance, seconds))
+            .expect("poses");
         let rates = parts(&MotionModel::Rigid.generator(&[omega, 0.0, 0.0])).0;
         let (velocity, push) = (straight + rates * aside, -(rates * straight));
         let mut mean = SVector::<f64, 9>::zeros();
@@ -156,7 +157,7 @@ mod tests {
         };
         let (from, to) = (pose(&numbers[..MAX_PARAMETERS]), pose(&numbers[MAX_PARAMETERS..]));
         let variance = CentredVector::from_fn(|j, _| 0.1 + numbers[j].abs());
-        let step = Step::new((model, 0.7), [&from, &to], &variance).expect("poses");
+        let step = Step::new((model, 0.7), [&from, &to], Units::of_usual_step(&variance, 0.7)).expect("poses");
         let root = SMatrix::<f64, N, N>::from_fn(|i, j| (7.0 * numbers[(3 * i + 5 * j) % numbers.len()]).sin());
         let in_use = |i: usize| course.has_more_than_motion() || i < 2 * k;
         let mean = SVector::<f64, N>::from_fn(|i, _| if in_use(i) { numbers[i] } else { 0.0 });
@@ -185,7 +186,8 @@ mod tests {
     fn a_turn_of_more_than_half_a_circle_is_one_the_other_way() {
         let pose = CentredPose { pose: Matrix3::identity(), centroid: Point2::origin() };
         let variance = CentredVector::repeat(1.0);
-        let step = Step::new((MotionModel::Rigid, 1.0), [&pose, &pose], &variance).expect("poses");
+        let step =
+            Step::new((MotionModel::Rigid, 1.0), [&pose, &pose], Units::of_usual_step(&variance, 1.0)).expect("poses");
         let mut hypothesis =
             Hypothesis::<9> { course: COURSES[3], mean: SVector::zeros(), covariance: SMatrix::identity() };
         hypothesis.mean[3] = 4.0;

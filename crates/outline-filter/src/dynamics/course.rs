@@ -49,7 +49,7 @@ pub(super) enum Course {
     },
     /// The accelerations change at random.
     Accelerating {
-        /// Level of their density, in variances of a pose per fifth power of a step.
+        /// Level of their density, in variances of a pose per fifth power of a usual step.
         level: f64,
         /// Whether the rates do as well, or the velocity of the centroid alone, as of an object that spins while it falls.
         rates: bool,

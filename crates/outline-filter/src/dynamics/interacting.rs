@@ -181,8 +181,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         let arrivals = self.leads.then_some(&mut self.arrivals);
         let units = Units { pose_variance: &self.pose_variance, usual: self.usual_step.seconds(), steps };
         mix(&mut self.hypotheses, &mut self.weights, self.model, units, arrivals);
-        let step = Step::new((self.model, seconds), [&self.reference, &to], &self.pose_variance)
-            .map(|step| step.of_usual(steps, self.usual_step.seconds()));
+        let step = Step::new((self.model, seconds), [&self.reference, &to], units);
         let possible = step.is_some_and(|step| {
             let fails = |change: &mut SteadyChange<N>| change.hypotheses().iter_mut().any(|h| !h.predict(&step));
             if self.steady_change.as_mut().is_some_and(fails) {

@@ -197,7 +197,7 @@ fn in_centred_coordinates(change: &PoseMatrix) -> PoseMatrix {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::{CentredPose, course::PointOfBody};
+    use crate::dynamics::{CentredPose, course::PointOfBody, usual_step::Units};
 
     type State = nalgebra::SVector<f64, 24>;
 
@@ -243,7 +243,7 @@ mod tests {
     fn a_constant_generator_of_projective_motion_moves_the_points_of_a_body_as_its_flow_does() {
         let [from, to] = poses();
         let variance = CentredVector::repeat(1.0);
-        let step = Step::new((MODEL, 0.4), [&from, &to], &variance).expect("poses");
+        let step = Step::new((MODEL, 0.4), [&from, &to], Units::of_usual_step(&variance, 0.4)).expect("poses");
         let mut hypothesis = begun(Course::ConstantGenerator);
         let before = hypothesis.mean;
         let centre = from.centre() + before.fixed_rows::<2>(RATES);
@@ -257,8 +257,8 @@ mod tests {
             assert!((found - expected).norm() < 1e-12, "{found} {expected}");
         }
         // And goes on as it was: half of the step twice is the step.
-        let half = Step::new((MODEL, 0.2), [&from, &from], &variance).expect("poses");
-        let rest = Step::new((MODEL, 0.2), [&from, &to], &variance).expect("poses");
+        let half = Step::new((MODEL, 0.2), [&from, &from], Units::of_usual_step(&variance, 0.2)).expect("poses");
+        let rest = Step::new((MODEL, 0.2), [&from, &to], Units::of_usual_step(&variance, 0.2)).expect("poses");
         let mut twice = begun(Course::ConstantGenerator);
         assert!(twice.predict(&half) && twice.predict(&rest));
         assert!((twice.mean - hypothesis.mean).amax() < 1e-12);
@@ -270,7 +270,7 @@ mod tests {
         let [from, _] = poses();
         let variance = CentredVector::zeros();
         let dt = 0.005;
-        let step = Step::new((MODEL, dt), [&from, &from], &variance).expect("poses");
+        let step = Step::new((MODEL, dt), [&from, &from], Units::of_usual_step(&variance, dt)).expect("poses");
         for course in COURSES {
             let mut begun = begun(course);
             begun.mean.fixed_rows_mut::<8>(0).fill(0.0);
@@ -312,7 +312,9 @@ mod tests {
             (0..3).for_each(|at| hypothesis.mean.fixed_rows_mut::<2>(8 * at + 4).fill(0.0));
             let mut affine = Hypothesis::<18> { course, mean: short(&hypothesis.mean), covariance: SMatrix::zeros() };
             let dt = 0.02;
-            let of = |model| Step::new((model, dt), [&poses[0], &poses[1]], &variance).expect("poses");
+            let of = |model| {
+                Step::new((model, dt), [&poses[0], &poses[1]], Units::of_usual_step(&variance, dt)).expect("poses")
+            };
             assert!(hypothesis.predict(&of(MODEL)) && affine.predict(&of(MotionModel::Affine)));
             let apart = (short(&hypothesis.mean) - affine.mean).amax();
             assert!(apart < dt * dt * 0.1, "{course:?}: {apart}");

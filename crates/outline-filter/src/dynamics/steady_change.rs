@@ -20,7 +20,7 @@ use crate::tuning::steady_change as tuning;
 pub(super) struct SteadyChange<const N: usize> {
     /// Of a generator, of a straight way and of any.
     hypotheses: Vec<Hypothesis<N>>,
-    /// Deviations of a pose over the square of a step: the unit of rates of change.
+    /// Deviations of a pose over the square of a usual step: the unit of rates of change.
     units: CentredVector,
     /// `ln(L_alpha / L_d)` of (82a) in docs/motion-filter.md: the likelihood of the frames since it began if next to nothing is known of the changes,
     /// over that of a constant velocity of a point near the centroid.
@@ -270,7 +270,7 @@ mod tests {
     use nalgebra::{Matrix2, Matrix3, Point2, Vector2};
 
     use super::*;
-    use crate::dynamics::{CentredPose, step::Step};
+    use crate::dynamics::{CentredPose, step::Step, usual_step::Units};
 
     /// Changes of three parameters that are each found with a deviation of 0.5, the first one so many deviations from none.
     fn found_at(deviations: f64) -> Weighed {
@@ -328,7 +328,8 @@ mod tests {
         let pose = CentredPose { pose: Matrix3::identity(), centroid: Point2::origin() };
         let variance = CentredVector::repeat(1.0);
         let dt = 0.005;
-        let step = Step::new((MotionModel::Rigid, dt), [&pose, &pose], &variance).expect("poses");
+        let step =
+            Step::new((MotionModel::Rigid, dt), [&pose, &pose], Units::of_usual_step(&variance, dt)).expect("poses");
         let mean = SVector::<f64, 9>::from([0.0, 0.0, 0.0, 1.5, 0.6, -0.2, -0.8, 0.3, 0.9]);
         for turns in [true, false] {
             let moved = |mean: SVector<f64, 9>, covariance: SMatrix<f64, 9, 9>| {
@@ -365,7 +366,8 @@ mod tests {
                 covariance: SMatrix::identity(),
             };
             let dt = seconds / f64::from(steps);
-            let step = Step::new((MotionModel::Rigid, dt), [&pose, &pose], &variance).expect("poses");
+            let step = Step::new((MotionModel::Rigid, dt), [&pose, &pose], Units::of_usual_step(&variance, dt))
+                .expect("poses");
             (0..steps).for_each(|_| assert!(hypothesis.predict(&step)));
             // The clockwise turn of section 1: a rotation by the angle that has been turned by since.
             let angle = |t: f64| omega * t + 0.5 * change * t * t;

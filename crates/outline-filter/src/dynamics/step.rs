@@ -2,7 +2,10 @@
 use freeform_riccati::MotionModel;
 use nalgebra::{Matrix2, Matrix3, SMatrix, Vector2};
 
-use super::centred::{CentredPose, CentredVector, as_map};
+use super::{
+    centred::{CentredPose, CentredVector, as_map},
+    usual_step::Units,
+};
 use crate::tuning::dynamics as tuning;
 
 /// A step in time between two reference poses.
@@ -30,7 +33,7 @@ impl<'a> Step<'a> {
     pub(super) fn new(
         (model, seconds): (MotionModel, f64),
         [from, to]: [&CentredPose; 2],
-        pose_variance: &'a CentredVector,
+        Units { pose_variance, usual, steps }: Units<'a>,
     ) -> Option<Self> {
         let turned = from.linear() * to.linear().try_inverse()?;
         let (mut turned_by, mut local) = (CentredVector::zeros(), Matrix3::identity());
@@ -40,15 +43,9 @@ impl<'a> Step<'a> {
             let by = model.motion_between(&as_map(&turned), 1.0)?;
             turned_by = CentredVector::from_fn(|j, _| by[j]);
         }
-        let by_change = shares_of_change(1.0, seconds);
+        let by_change = shares_of_change(steps, usual);
         let centre = from.centre() - to.centre();
         Some(Self { model, seconds, turned, turned_by, local, centre, pose_variance, by_change })
-    }
-
-    /// As one of so many usual steps, of so many seconds each, over which accelerations change for as long.
-    pub(super) fn of_usual(mut self, steps: f64, usual: f64) -> Self {
-        self.by_change = shares_of_change(steps, usual);
-        self
     }
 
     /// Propagation of the N = 3 k errors of a hypothesis, as far as it is that of the pose by itself, where the rates stay and its centroid
@@ -119,10 +116,9 @@ mod tests {
     #[test]
     fn accelerations_change_over_a_gap_by_as_much_as_in_its_steps_one_after_the_other() {
         const SECONDS: f64 = 1.0 / 30.0;
-        let transition =
-            nalgebra::Matrix3::new(1.0, SECONDS, 0.5 * SECONDS * SECONDS, 0.0, 1.0, SECONDS, 0.0, 0.0, 1.0);
-        let of = |steps: f64| nalgebra::Matrix3::from(shares_of_change(steps, SECONDS));
-        let mut one_by_one = nalgebra::Matrix3::zeros();
+        let transition = Matrix3::new(1.0, SECONDS, 0.5 * SECONDS * SECONDS, 0.0, 1.0, SECONDS, 0.0, 0.0, 1.0);
+        let of = |steps: f64| Matrix3::from(shares_of_change(steps, SECONDS));
+        let mut one_by_one = Matrix3::zeros();
         for steps in 1_u8..=17 {
             one_by_one = transition * one_by_one * transition.transpose() + of(1.0);
             let at_once = of(f64::from(steps));

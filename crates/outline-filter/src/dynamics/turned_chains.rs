@@ -88,6 +88,7 @@ mod tests {
         course::Course,
         hypothesis::Hypothesis,
         step::Step,
+        usual_step::Units,
     };
 
     proptest! {
@@ -103,7 +104,7 @@ mod tests {
             let hypothesis = Hypothesis::<18> { course, mean: SVector::zeros(), covariance };
             let at = CentredPose { pose: as_map(&Matrix2::identity()), centroid: Point2::origin() };
             let variance = CentredVector::zeros();
-            let step = Step::new((MotionModel::Affine, dt), [&at, &at], &variance).expect("poses");
+            let step = Step::new((MotionModel::Affine, dt), [&at, &at], Units::of_usual_step(&variance, dt)).expect("poses");
             let none = Vector2::zeros();
             let (along, pushed) = (Matrix2::identity() * dt, Matrix2::zeros());
             let transition = hypothesis.transition(&step, (&turn, &along, &pushed), (&none, &none));

@@ -251,6 +251,7 @@ mod tests {
         centred::{CentredVector, as_map, carried},
         course::{Course, PointOfBody},
         step::Step,
+        usual_step::Units,
     };
 
     proptest! {
@@ -277,7 +278,7 @@ mod tests {
                 hypothesis.covariance = SMatrix::from_fn(|i, j| if used(i, j) { all[(i, j)] } else { 0.0 });
                 let at = CentredPose { pose: as_map(&Matrix2::identity()), centroid: Point2::origin() };
                 let variance = CentredVector::zeros();
-                let step = Step::new((MotionModel::Affine, dt), [&at, &at], &variance).expect("poses");
+                let step = Step::new((MotionModel::Affine, dt), [&at, &at], Units::of_usual_step(&variance, dt)).expect("poses");
                 let transition = hypothesis.transition(&step, (&turn, &along, &pushed), (&v, &later));
                 let expected = carried(&transition, &hypothesis.covariance, size);
                 hypothesis.carry_turned([&turn, &along, &pushed], [&v, &later], dt);

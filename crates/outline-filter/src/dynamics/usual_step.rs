@@ -2,8 +2,8 @@
 use super::centred::CentredVector;
 use crate::tuning::dynamics as tuning;
 
-/// The time from one frame to the next as it usually is. Levels of hypotheses, and probabilities of changes, are those of such a step: over a gap between
-/// frames a motion changes for longer.
+/// The time from one frame to the next as it usually is. Levels of hypotheses, and probabilities of changes, are those of such a step: over a gap
+/// between frames a motion changes for longer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct UsualStep {
@@ -21,6 +21,14 @@ pub(super) struct Units<'a> {
     pub(super) usual: f64,
     /// Usual steps that the step takes the time of.
     pub(super) steps: f64,
+}
+
+#[cfg(test)]
+impl<'a> Units<'a> {
+    /// Of a step of so many seconds that is a usual one.
+    pub(super) const fn of_usual_step(pose_variance: &'a CentredVector, seconds: f64) -> Self {
+        Self { pose_variance, usual: seconds, steps: 1.0 }
+    }
 }
 
 impl UsualStep {

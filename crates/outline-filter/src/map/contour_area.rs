@@ -137,13 +137,11 @@ impl OutlineMap {
             if here == start {
                 return (contour.cells > 1).then_some(contour);
             }
-            // Links may point either way.
-            let [a, b] = self.cells[here].neighbours;
-            let next = if a == last { b } else { a };
-            if contour.cells == self.cells.len() || a == here || b == here {
+            let cell = &self.cells[here];
+            if contour.cells == self.cells.len() || cell.neighbours.contains(&here) {
                 return None;
             }
-            (last, here) = (here, next);
+            (last, here) = (here, cell.beyond(last));
         }
     }
 }

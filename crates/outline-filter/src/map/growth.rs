@@ -120,10 +120,9 @@ impl OutlineMap {
     fn ends_soon(&self, cell: usize, side: usize, most: usize) -> bool {
         let (mut last, mut here) = (self.cells[cell].neighbours[1 - side], cell);
         (0..most).any(|_| {
-            let [back, forth] = self.cells[here].neighbours;
-            let next = if back == last { forth } else { back };
-            last = here;
-            next == std::mem::replace(&mut here, next)
+            let next = self.cells[here].beyond(last);
+            last = std::mem::replace(&mut here, next);
+            here == last
         })
     }
 

@@ -276,13 +276,11 @@ impl OutlineMap {
         let [before, after] = [0, 1].map(|side| {
             let (mut last, mut here) = (number, self.cells[number].neighbours[side]);
             for _ in 1..steps {
-                // Links may point either way.
-                let [a, b] = self.cells[here].neighbours;
-                let next = if a == last { b } else { a };
-                if a == here || b == here {
+                let cell = &self.cells[here];
+                if cell.neighbours.contains(&here) {
                     break;
                 }
-                (last, here) = (here, next);
+                (last, here) = (here, cell.beyond(last));
             }
             self.cells[here].centre
         });

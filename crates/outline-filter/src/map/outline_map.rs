@@ -17,6 +17,14 @@ pub(crate) struct Cell {
     pub(crate) neighbours: [usize; 2],
 }
 
+impl Cell {
+    /// The neighbour on the other side of one of them: links may point either way. At an end it is the cell itself.
+    pub(super) fn beyond(&self, neighbour: usize) -> usize {
+        let [one, other] = self.neighbours;
+        if one == neighbour { other } else { one }
+    }
+}
+
 /// Geometry of an outline: cells along it in the body frame, in normalised coordinates.
 ///
 /// Where the outline lies on the normal of a cell is not geometry but belief: `Belief::offsets`.

@@ -85,9 +85,7 @@ impl OutlineMap {
             visit(steps, [a, b]);
             for side in &mut sides {
                 let [before, at] = *side;
-                let [one, other] = self.cells[at].neighbours;
-                let next = if one == before { other } else { one };
-                // An end has itself for a neighbour.
+                let next = self.cells[at].beyond(before);
                 *side = if next == at { [at, number] } else { [at, next] };
             }
         }

@@ -66,17 +66,18 @@ pub(crate) mod batch {
 
 /// Hypotheses of dynamics.
 pub(crate) mod dynamics {
-    /// Probability, in a usual step, that a constant motion changes to that of a certain other hypothesis: to all of them together, a change in 110,000 frames.
-    /// With a hundred times as much most sequences of a thousand frames were found to show a change by chance; a real one is seen a frame or two later.
+    /// Probability, in a usual step, that a constant motion changes to that of a certain other hypothesis: to all of them together, a change in
+    /// 110,000 frames. With a hundred times as much most sequences of a thousand frames were found to show a change by chance; a real one is seen a
+    /// frame or two later.
     pub(crate) const LEAVES_CONSTANT: f64 = 0.000_000_5;
     /// As that, of a motion that changes already: most of those go on to.
     pub(crate) const LEAVES_CHANGING: f64 = 0.000_15;
-    /// The usual step becomes by no more than this shorter, or longer, with one that is: by so little that gaps between frames do not become usual, and
-    /// that steps which differ by as much are all usual ones. Where the first steps are over gaps, some frames make up for that.
+    /// The usual step becomes by no more than this shorter, or longer, with one that is: by so little that gaps between frames do not become usual,
+    /// and that steps which differ by as much are all usual ones. Where the first steps are over gaps, some frames make up for that.
     pub(crate) const SHORTER: f64 = 0.8;
     pub(crate) const LONGER: f64 = 1.0625;
-    /// Usual steps over which changes are reckoned with at most: by then a motion that changes has gone anywhere. The probability of a change is that of a
-    /// step times their number, which must stay below 1.
+    /// Usual steps over which changes are reckoned with at most: by then a motion that changes has gone anywhere. The probability of a change is that
+    /// of a step times their number, which must stay below 1.
     pub(crate) const MOST_STEPS: f64 = 100.0;
     /// How often a motion that changes becomes constant, for one change of how it changes. A body that swings looks for three or four frames at its
     /// turning points like one of a constant motion, and every frame of that speaks for it by up to sixty to one.
@@ -103,9 +104,9 @@ pub(crate) mod dynamics {
     /// As that, of an object of which a point runs straight: edges that are drawn without grey values, or rounded otherwise, put poses off by two and more.
     /// With four, deviations were two to five times as wide where a smaller shake explains the poses.
     pub(crate) const SHAKEN_STRAIGHT: f64 = SHAKEN[0];
-    /// Densities of the change of accelerations: in variances of a pose as a frame tells it, per fifth power of a step. The first remember some forty
-    /// frames, fourteen and four, and tell poses apart by their variance hardly more than a constant motion does; the last remember none, as of bodies
-    /// that are pushed. From the third on they are thirty times apart: where none fits, a constant motion explains turning points better, and
+    /// Densities of the change of accelerations: in variances of a pose as a frame tells it, per fifth power of a usual step. The first remember some
+    /// forty frames, fourteen and four, and tell poses apart by their variance hardly more than a constant motion does; the last remember none, as of
+    /// bodies that are pushed. From the third on they are thirty times apart: where none fits, a constant motion explains turning points better, and
     /// between levels ten thousand times apart deviations were half of the errors.
     pub(crate) const LEVELS: [f64; 9] = [1e-8, 1e-5, 1e-2, 0.3, 1e1, 3e2, 1e4, 3e5, 1e7];
     /// Steps that a density of one remembers; others, by its sixth root as many times (the gain of a Kalman filter of a random jerk).
@@ -165,7 +166,7 @@ pub(crate) mod steady_change {
     /// Probability that it does. Few frames do not tell: at the rate that moves an object by one deviation of a pose between three frames a
     /// constant generator is off by more than three of its own deviations.
     pub(crate) const PRIOR: f64 = 0.1;
-    /// Sizes of the rates of change, as deviations, in deviations of a pose per square of a step: all are as probable as each other. Larger
+    /// Sizes of the rates of change, as deviations, in deviations of a pose per square of a usual step: all are as probable as each other. Larger
     /// ones are seen in the third frame, and smaller ones not before the sixtieth.
     pub(crate) const SIZES: [f64; 6] = [4.0, 1.0, 0.25, 0.06, 0.015, 0.004];
     /// A size that all of them are small against.

@@ -170,7 +170,7 @@ fn bar_with_disc(height: f64, random: &mut ChaCha8Rng) -> Outline {
     Outline::Open(OpenOutline::new(arcs.to_vec()).expect("arcs"))
 }
 
-/// The disc was learnt into the outline of the bar, which then went along itself with it: at 60 pixels per second, known to some.
+/// The disc was learnt into the outline of the bar, which was then said to go along itself with it, at nearly 60 pixels per second.
 #[test]
 fn a_bar_across_the_picture_is_not_said_to_move_along_itself_with_what_passes_by_and_touches_it() {
     for seed in 0..4 {

@@ -194,15 +194,15 @@ fn a_body_that_is_pushed_is_followed_though_errors_of_its_edges_stood_still_whil
 #[test]
 fn a_body_that_swings_is_within_its_deviations_in_the_first_frames_after_a_gap() {
     let [mut stated, mut held] = [0, 0];
-    for seed in 0..12 {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let number = f64::from(u32::try_from(seed).expect("a small number"));
+    for seed in 0..12_u32 {
+        let mut random = ChaCha8Rng::seed_from_u64(seed.into());
+        let number = f64::from(seed);
         let (amplitude, pace, phase) = (0.3 + 0.04 * number, 3.0 + 0.25 * number, 0.5 * number);
         let angle = |time: f64| amplitude * (pace * time + phase).sin();
         let rate = |time: f64| amplitude * pace * (pace * time + phase).cos();
-        let (after, mut run) = (36 + seed % 12, filter(MotionModel::Rigid));
+        let (after, mut run) = (36 + seed, filter(MotionModel::Rigid));
         for frame in (0..30).chain(after..after + 3) {
-            let time = f64::from(u32::try_from(frame).expect("a small number")) / 30.0;
+            let time = f64::from(frame) / 30.0;
             // Hung from a point five radii above its centre.
             let pose = Rotation2::new(angle(time));
             let at_origin = bent_outline(angle(time), 0.002, &mut random, |_, _| 0.0);
