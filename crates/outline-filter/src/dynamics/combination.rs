@@ -9,6 +9,7 @@ use super::{
     hypothesis::Hypothesis,
     interacting::{InteractingHypotheses, MOST},
     steady_change::PossibleChange,
+    weighed_changes::CentroidVelocity,
 };
 use crate::{
     belief::StateMatrix,
@@ -103,18 +104,22 @@ impl<const N: usize> InteractingHypotheses<N> {
         let wider = (&self.factors(), self.shaking);
         let mut sum = PossibleChange { probability: 0.0, apart: SMatrix::zeros(), beside: SMatrix::zeros() };
         for (hypothesis, weight) in self.hypotheses.iter().zip(&self.weights) {
-            let turns = match hypothesis.course {
-                Course::ConstantGenerator => true,
-                course @ Course::ConstantVelocity { of: PointOfBody::NearCentroid, .. } if !course.is_shaken() => false,
+            let velocity = match hypothesis.course {
+                Course::ConstantGenerator => CentroidVelocity::Turns,
+                course @ Course::ConstantVelocity { of: PointOfBody::NearCentroid, .. } if !course.is_shaken() => {
+                    CentroidVelocity::Stays
+                }
                 // The centroid changes its velocity where a point aside keeps its own, which is no change of this motion.
-                Course::ConstantVelocity { .. }
-                | Course::Shaken { .. }
+                Course::ConstantVelocity { .. } | Course::Accelerating { rates: false, .. } => {
+                    CentroidVelocity::Changes
+                }
+                Course::Shaken { .. }
                 | Course::Accelerating { .. }
                 | Course::ChangingGenerator { .. }
                 | Course::SteadyChange { .. } => continue,
             };
             if *weight > tuning::OUTSIDE_THREE_DEVIATIONS {
-                let possible = change.possible(turns, wider, &self.place_of(hypothesis))?;
+                let possible = change.possible(velocity, wider, &self.place_of(hypothesis))?;
                 sum.probability += weight * possible.probability;
                 sum.apart += possible.apart * *weight;
                 sum.beside += possible.beside * *weight;

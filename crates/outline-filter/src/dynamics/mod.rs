@@ -37,6 +37,7 @@ mod turned_chains;
 mod turned_motion;
 mod unmodelled_estimate;
 mod usual_step;
+mod weighed_changes;
 mod wrong_family;
 
 pub(crate) use centred::{CentredDeviations, CentredPose, Summary, centred_order, centred_velocity};

@@ -1,14 +1,13 @@
 //! A motion that changes at a steady rate from the beginning: how probable that is, and how far off a constant one is then.
-use std::ops::Range;
-
 use freeform_riccati::MotionModel;
-use nalgebra::{Cholesky, Const, SMatrix, SVector};
+use nalgebra::{SMatrix, SVector};
 
 use super::{
     centred::{CentredDeviations, CentredMatrix, CentredVector, LARGEST},
     correction::{of_rates_alone, root_of},
     course::Course,
     hypothesis::{CentredMeasurement, Hypothesis},
+    weighed_changes::{CentroidVelocity, Changes, Weighed, sized},
 };
 use crate::tuning::steady_change as tuning;
 
@@ -43,6 +42,15 @@ pub(super) struct PossibleChange<const N: usize> {
     pub(super) apart: SMatrix<f64, N, N>,
     /// ...and beside those.
     pub(super) beside: SMatrix<f64, N, N>,
+}
+
+/// The number of the hypothesis of what changes beside such a velocity.
+fn number_beside(velocity: CentroidVelocity) -> usize {
+    match velocity {
+        CentroidVelocity::Turns => GENERATOR,
+        CentroidVelocity::Stays => STRAIGHT,
+        CentroidVelocity::Changes => ANY_WAY,
+    }
 }
 
 impl<const N: usize> SteadyChange<N> {
@@ -104,13 +112,13 @@ impl<const N: usize> SteadyChange<N> {
             && self.frames <= tuning::FRAMES
     }
 
-    /// What it adds to what is known of a motion that is otherwise constant, in that its velocity `turns` with the object or does not. The rates
-    /// of change are those of the turn alone, of the velocity alone, or of all parameters, each of some sizes, by their Bayes factors. Deviations of
-    /// poses about the centroid are to be multiplied by factors, as what is stated will be, and their variances by that of a camera that shakes;
-    /// `place` carries errors of this state to those that are asked for.
+    /// What it adds to what is known of a motion whose rates are otherwise constant, given what its `velocity` does otherwise. What changes steadily are
+    /// the rates alone, the velocity alone or all parameters, by some sizes, weighted by their Bayes factors; where the velocity changes anyway, the
+    /// rates alone. Deviations of poses about the centroid are to be multiplied by factors, as what is stated will be, and their variances by that of a
+    /// camera that shakes; `place` carries errors of this state to those that are asked for.
     pub(super) fn possible(
         &self,
-        turns: bool,
+        velocity: CentroidVelocity,
         (widened_later, shaking): (&CentredDeviations, f64),
         place: &SMatrix<f64, N, N>,
     ) -> Option<PossibleChange<N>> {
@@ -118,14 +126,17 @@ impl<const N: usize> SteadyChange<N> {
             return None;
         }
         let k = Hypothesis::<N>::K;
-        let told = self.told(if turns { GENERATOR } else { STRAIGHT }, place)?;
-        // Of a body that runs straight the rates alone, whatever way its centroid goes: a point beside that may run straight.
-        let of_rates = if turns { told } else { self.told(ANY_WAY, place)? };
-        let against = if turns { 0.0 } else { self.against(&told.changes(|information| information), k)? };
+        let told = self.told(number_beside(velocity), place)?;
+        // Of others than a generator the rates alone, whatever way its centroid goes: a point beside that may run straight.
+        let of_rates = if velocity == CentroidVelocity::Turns { told } else { self.told(ANY_WAY, place)? };
+        let against = match velocity {
+            CentroidVelocity::Stays => self.against(&told.changes(|information| information), k)?,
+            CentroidVelocity::Turns | CentroidVelocity::Changes => 0.0,
+        };
         let widen = |information: CentredMatrix| {
             CentredMatrix::from_fn(|i, j| information[(i, j)] / (widened_later[i] * widened_later[j] * shaking))
         };
-        let weighed = told.changes(widen).weighed(k, against / shaking, &of_rates.changes(widen))?;
+        let weighed = told.changes(widen).weighed(k, (velocity, against / shaking), &of_rates.changes(widen))?;
         let Weighed { probability, of_rates: by_rates, others } = weighed;
         // What is stated is widened by the factors later on, and these are sizes as they are.
         let carried = |moments: [CentredMatrix; 2]| {
@@ -182,145 +193,12 @@ impl<const N: usize> Told<N> {
     }
 }
 
-/// What frames say of rates of change, in their units.
-struct Changes {
-    information: CentredMatrix,
-    score: CentredVector,
-}
-
-/// Rates of change weighed against none: the probability that they matter, and the moments of those that the rates have alone and of the others.
-struct Weighed {
-    probability: f64,
-    of_rates: Moments,
-    others: Moments,
-}
-
-/// Second moments of rates of change, each times its probability: of what is found, and of what may be there beside that.
-struct Moments {
-    apart: CentredMatrix,
-    beside: CentredMatrix,
-}
-
-impl Moments {
-    fn none() -> Self {
-        Self { apart: CentredMatrix::zeros(), beside: CentredMatrix::zeros() }
-    }
-
-    fn divided(self, by: f64) -> Self {
-        Self { apart: self.apart / by, beside: self.beside / by }
-    }
-}
-
-/// Rates of change of some sizes beforehand, in their units.
-struct OfSizes {
-    /// Logarithm of their Bayes factor against none.
-    logarithm: f64,
-    found: CentredVector,
-    /// Inverse of the share of their variance that is left.
-    factor: Cholesky<f64, Const<LARGEST>>,
-}
-
-/// A size of some parameters, none of the others.
-fn sized(members: &Range<usize>, size: f64) -> CentredVector {
-    CentredVector::from_fn(|i, _| if members.contains(&i) { size } else { 0.0 })
-}
-
-impl Changes {
-    /// Changes of sizes beforehand, as deviations.
-    fn of_sizes(&self, sizes: &CentredVector) -> Option<OfSizes> {
-        let of_prior =
-            CentredMatrix::from_fn(|i, j| f64::from(u8::from(i == j)) + sizes[i] * self.information[(i, j)] * sizes[j]);
-        let factor = of_prior.cholesky()?;
-        let score = self.score.component_mul(sizes);
-        let found = factor.solve(&score);
-        let logarithm = 0.5 * (score.dot(&found) - factor.ln_determinant());
-        Some(OfSizes { logarithm, found: found.component_mul(sizes), factor })
-    }
-
-    /// Weighs changes of k parameters, with a logarithm `against` those of the velocity; those of the rates alone by what is said of them.
-    fn weighed(&self, k: usize, against: f64, of_rates: &Self) -> Option<Weighed> {
-        let (rates, velocity) = (0..k - 2, k - 2..k);
-        let (mut by_rates, mut others) = (Moments::none(), Moments::none());
-        let some = [rates, velocity, 0..k];
-        let each = tuning::PRIOR / (some.len() * tuning::SIZES.len()) as f64;
-        let (mut all, mut probability) = (1.0 - tuning::PRIOR, 0.0);
-        for members in some {
-            let is_of_rates = members.end < k;
-            let (changes, against) = if is_of_rates { (of_rates, 0.0) } else { (self, against) };
-            let moments = if is_of_rates { &mut by_rates } else { &mut others };
-            for size in tuning::SIZES {
-                let sizes = sized(&members, size);
-                let OfSizes { logarithm, found, factor } = changes.of_sizes(&sizes)?;
-                let left = factor.inverse();
-                let weight = each * (logarithm + against).min(tuning::LARGEST_LOGARITHM).exp();
-                all += weight;
-                // Of a size that frames do not tell from none, a change is no other motion.
-                probability += weight * members.clone().map(|i| 1.0 - left[(i, i)]).fold(0.0, f64::max);
-                moments.apart += found * found.transpose() * weight;
-                moments.beside += left.component_mul(&(sizes * sizes.transpose())) * weight;
-            }
-        }
-        let [of_rates, others] = [by_rates, others].map(|moments| moments.divided(all));
-        Some(Weighed { probability: probability / all, of_rates, others })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use nalgebra::{Matrix2, Matrix3, Point2, Vector2};
 
     use super::*;
     use crate::dynamics::{CentredPose, step::Step, usual_step::Units};
-
-    /// Changes of three parameters that are each found with a deviation of 0.5, the first one so many deviations from none.
-    fn found_at(deviations: f64) -> Weighed {
-        let information = CentredMatrix::from_diagonal(&CentredVector::from_fn(|i, _| if i < 3 { 4.0 } else { 1.0 }));
-        let score = CentredVector::from_fn(|i, _| if i == 0 { 2.0 * deviations } else { 0.0 });
-        let changes = Changes { information, score };
-        changes.weighed(3, 0.0, &changes).expect("regular")
-    }
-
-    #[test]
-    fn a_change_that_is_not_found_is_less_probable_than_before_and_one_of_six_deviations_is_beyond_doubt() {
-        let [none, some, clear] = [0.0, 2.0, 6.0].map(found_at);
-        let apart = |weighed: &Weighed| weighed.of_rates.apart + weighed.others.apart;
-        assert!(none.probability < 0.3 * tuning::PRIOR && apart(&none).amax() == 0.0, "{}", none.probability);
-        assert!(none.probability < some.probability && some.probability < 0.5, "{}", some.probability);
-        assert!(clear.probability > 0.9, "{}", clear.probability);
-        // Nearly all of the three units that are found are there, known to about half a unit.
-        let size = apart(&clear)[(0, 0)].sqrt();
-        assert!((2.7..3.0).contains(&size), "{size}");
-        let beside = clear.of_rates.beside + clear.others.beside;
-        assert!((0.4..0.5).contains(&beside[(0, 0)].sqrt()), "{beside}");
-    }
-
-    #[test]
-    fn what_explains_a_change_of_the_velocity_rules_out_no_change_of_the_spin() {
-        let information = CentredMatrix::from_diagonal(&CentredVector::from_fn(|i, _| if i < 3 { 4.0 } else { 1.0 }));
-        let whole = |score: CentredVector| Changes { information, score };
-        // Whatever way the centroid goes.
-        let alone = |score: CentredVector| {
-            let information =
-                CentredMatrix::from_diagonal(&CentredVector::from_fn(|i, _| if i == 0 { 4.0 } else { 1.0 }));
-            Changes { information, score: CentredVector::from_fn(|i, _| if i == 0 { score[i] } else { 0.0 }) }
-        };
-        // Six deviations of the turn, or of the velocity; with nothing else to explain them, and with something that does so far better.
-        let [[spin, velocity], [spin_beside, velocity_beside]] = [0.0, -100.0].map(|against| {
-            [0, 2].map(|number| {
-                let score = CentredVector::from_fn(|i, _| if i == number { 12.0 } else { 0.0 });
-                whole(score).weighed(3, against, &alone(score)).expect("regular")
-            })
-        });
-        assert!([spin, velocity].iter().all(|weighed| weighed.probability > 0.9));
-        assert!(
-            spin_beside.probability > 0.9 && spin_beside.of_rates.apart[(0, 0)] > 2.0,
-            "{}",
-            spin_beside.probability
-        );
-        // Of the velocity nothing is left.
-        assert!(velocity_beside.probability < 0.3 * tuning::PRIOR && velocity_beside.others.apart.amax() < 1e-12);
-        assert!(velocity_beside.of_rates.apart.amax() < 1e-12, "{}", velocity_beside.of_rates.apart);
-    }
 
     /// Columns of the propagation of errors over a step, by finite differences and as the covariance is carried.
     #[test]
