@@ -97,11 +97,9 @@ impl<const N: usize> InteractingHypotheses<N> {
         carried(&self.place_of(hypothesis), &hypothesis.covariance, 2 * self.model.parameter_count())
     }
 
-    /// What a motion that changes at a steady rate adds to hypotheses of constant ones, weighted with them.
+    /// What rates or a velocity that change at a steady rate add to hypotheses by which they are constant, weighted with them.
     fn possible_change(&self) -> Option<PossibleChange<N>> {
         let change = self.steady_change.as_ref()?;
-        // While a camera that shakes explains the frames best, their poses say as little of a change.
-        let wider = (&self.factors(), self.shaking);
         let mut sum = PossibleChange { probability: 0.0, apart: SMatrix::zeros(), beside: SMatrix::zeros() };
         for (hypothesis, weight) in self.hypotheses.iter().zip(&self.weights) {
             let velocity = match hypothesis.course {
@@ -109,7 +107,7 @@ impl<const N: usize> InteractingHypotheses<N> {
                 course @ Course::ConstantVelocity { of: PointOfBody::NearCentroid, .. } if !course.is_shaken() => {
                     CentroidVelocity::Stays
                 }
-                // The centroid changes its velocity where a point aside keeps its own, which is no change of this motion.
+                // Where a point aside keeps its velocity the centroid does not, and neither where it accelerates: that is no change of this motion.
                 Course::ConstantVelocity { .. } | Course::Accelerating { rates: false, .. } => {
                     CentroidVelocity::Changes
                 }
@@ -119,7 +117,9 @@ impl<const N: usize> InteractingHypotheses<N> {
                 | Course::SteadyChange { .. } => continue,
             };
             if *weight > tuning::OUTSIDE_THREE_DEVIATIONS {
-                let possible = change.possible(velocity, wider, &self.place_of(hypothesis))?;
+                // By poses of a camera that shakes, be it by this hypothesis or by the one that explains the frames best, a change is told as much less.
+                let wider = (&self.factors(), self.shaking.max(hypothesis.course.shaking()));
+                let Some(possible) = change.possible(velocity, wider, &self.place_of(hypothesis)) else { continue };
                 sum.probability += weight * possible.probability;
                 sum.apart += possible.apart * *weight;
                 sum.beside += possible.beside * *weight;

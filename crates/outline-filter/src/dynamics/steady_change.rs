@@ -33,7 +33,7 @@ const STRAIGHT: usize = 1;
 const ANY_WAY: usize = 2;
 const TURNS: [bool; 3] = [true, false, false];
 
-/// What a motion that may change adds to what is known of a constant one.
+/// What a motion that may change adds to what is known of one whose rates are constant.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PossibleChange<const N: usize> {
     /// Probability that the motion changes by as much as frames can tell.
@@ -127,8 +127,8 @@ impl<const N: usize> SteadyChange<N> {
         }
         let k = Hypothesis::<N>::K;
         let told = self.told(number_beside(velocity), place)?;
-        // Of others than a generator the rates alone, whatever way its centroid goes: a point beside that may run straight.
-        let of_rates = if velocity == CentroidVelocity::Turns { told } else { self.told(ANY_WAY, place)? };
+        // Of a body that runs straight the rates alone, whatever way its centroid goes: a point beside that may run straight.
+        let of_rates = if velocity == CentroidVelocity::Stays { self.told(ANY_WAY, place)? } else { told };
         let against = match velocity {
             CentroidVelocity::Stays => self.against(&told.changes(|information| information), k)?,
             CentroidVelocity::Turns | CentroidVelocity::Changes => 0.0,

@@ -162,15 +162,17 @@ mod tests {
 
     #[test]
     fn of_a_velocity_that_changes_anyway_a_steady_change_is_no_news_and_of_the_rates_it_is() {
-        let information = CentredMatrix::from_diagonal(&CentredVector::from_fn(|i, _| if i < 3 { 4.0 } else { 1.0 }));
-        // Six deviations of the turn, or of the velocity.
-        let [spin, velocity] = [0, 2].map(|number| {
-            let score = CentredVector::from_fn(|i, _| if i == number { 12.0 } else { 0.0 });
-            let changes = Changes { information, score };
-            changes.weighed(3, (CentroidVelocity::Changes, 0.0), &changes).expect("regular")
-        });
-        assert!(spin.probability > 0.9 && spin.of_rates.apart[(0, 0)] > 2.0, "{}", spin.probability);
-        assert!(velocity.probability < tuning::PRIOR && velocity.of_rates.apart.amax() == 0.0);
-        assert!([spin, velocity].iter().all(|weighed| weighed.others.apart.amax() == 0.0));
+        let information = CentredMatrix::from_diagonal(&CentredVector::from_fn(|i, _| if i < 8 { 4.0 } else { 1.0 }));
+        // Eight deviations of the turn, or of the velocity; and as many of the other, which is said by what is not asked for.
+        let by = |number: usize| CentredVector::from_fn(|i, _| if i == number { 16.0 } else { 0.0 });
+        for k in [3, 4, 6, 8] {
+            let [spin, velocity] = [[0, k - 1], [k - 1, 0]].map(|[asked, other]| {
+                let changes = |number| Changes { information, score: by(number) };
+                changes(other).weighed(k, (CentroidVelocity::Changes, 0.0), &changes(asked)).expect("regular")
+            });
+            assert!(spin.probability > 0.8 && spin.of_rates.apart[(0, 0)] > 2.0, "{k}: {}", spin.probability);
+            assert!(velocity.probability < tuning::PRIOR && velocity.of_rates.apart.amax() == 0.0, "{k}");
+            assert!([spin, velocity].iter().all(|weighed| weighed.others.apart.amax() == 0.0), "{k}");
+        }
     }
 }

@@ -164,7 +164,8 @@ pub(crate) mod dynamics {
 /// A motion that changes at a steady rate from the beginning.
 pub(crate) mod steady_change {
     /// Probability that it does. Few frames do not tell: at the rate that moves an object by one deviation of a pose between three frames a
-    /// constant generator is off by more than three of its own deviations.
+    /// constant generator is off by more than three of its own deviations. Of the rates alone, where the velocity changes anyway, it is no less: what
+    /// is pushed or braked is more often turned by that than left alone.
     pub(crate) const PRIOR: f64 = 0.1;
     /// Sizes of the rates of change, as deviations, in deviations of a pose per square of a usual step: all are as probable as each other. Larger
     /// ones are seen in the third frame, and smaller ones not before the sixtieth.

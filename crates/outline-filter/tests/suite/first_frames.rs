@@ -47,7 +47,7 @@ fn a_spin_that_grows_from_the_first_frame_on_is_within_its_deviations_in_most_of
     }
 }
 
-/// A body whose spin grows as it speeds up or is braked looks for some frames like one of which a point aside runs straight. That does not say that the
+/// A body whose spin grows as it speeds up or is braked looks in its first frames like one of which a point aside runs straight. That does not say that the
 /// spin stays: where it was taken to, omega was more than four deviations off in 49 of these 1152 frames; it is in 17.
 #[test]
 fn a_spin_that_grows_while_the_body_speeds_up_is_within_its_deviations_in_nearly_all_of_the_next_frames() {
