@@ -99,14 +99,13 @@ impl<const N: usize> InteractingHypotheses<N> {
 
     /// What rates or a velocity that change at a steady rate add to hypotheses by which they are constant, weighted with them.
     fn possible_change(&self) -> Option<PossibleChange<N>> {
-        let change = self.steady_change.as_ref()?;
+        let change = self.steady_change.as_ref().filter(|change| !change.is_over())?;
+        let factors = self.factors();
         let mut sum = PossibleChange { probability: 0.0, apart: SMatrix::zeros(), beside: SMatrix::zeros() };
         for (hypothesis, weight) in self.hypotheses.iter().zip(&self.weights) {
             let velocity = match hypothesis.course {
                 Course::ConstantGenerator => CentroidVelocity::Turns,
-                course @ Course::ConstantVelocity { of: PointOfBody::NearCentroid, .. } if !course.is_shaken() => {
-                    CentroidVelocity::Stays
-                }
+                course if course == Course::straight(PointOfBody::NearCentroid) => CentroidVelocity::Stays,
                 // Where a point aside keeps its velocity the centroid does not, and neither where it accelerates: that is no change of this motion.
                 Course::ConstantVelocity { .. } | Course::Accelerating { rates: false, .. } => {
                     CentroidVelocity::Changes
@@ -118,7 +117,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             };
             if *weight > tuning::OUTSIDE_THREE_DEVIATIONS {
                 // By poses of a camera that shakes, be it by this hypothesis or by the one that explains the frames best, a change is told as much less.
-                let wider = (&self.factors(), self.shaking.max(hypothesis.course.shaking()));
+                let wider = (&factors, self.shaking.max(hypothesis.course.shaking()));
                 let Some(possible) = change.possible(velocity, wider, &self.place_of(hypothesis)) else { continue };
                 sum.probability += weight * possible.probability;
                 sum.apart += possible.apart * *weight;

@@ -68,7 +68,7 @@ impl<const N: usize> SteadyChange<N> {
     }
 
     /// Whether it has been followed for long: smaller changes than those that are reckoned with would be seen by then.
-    fn is_over(&self) -> bool {
+    pub(super) fn is_over(&self) -> bool {
         self.frames >= tuning::FRAMES
     }
 
@@ -122,9 +122,6 @@ impl<const N: usize> SteadyChange<N> {
         (widened_later, shaking): (&CentredDeviations, f64),
         place: &SMatrix<f64, N, N>,
     ) -> Option<PossibleChange<N>> {
-        if self.is_over() {
-            return None;
-        }
         let k = Hypothesis::<N>::K;
         let told = self.told(number_beside(velocity), place)?;
         // Of a body that runs straight the rates alone, whatever way its centroid goes: a point beside that may run straight.
