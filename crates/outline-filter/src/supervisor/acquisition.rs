@@ -13,7 +13,7 @@ use crate::{
     search::{Extent, Landmarks, RegisteredPose, Registration, TurnCentre, symmetry_order},
     track::{Comparison, Doubt, Outcome, Track},
     tuning::{
-        supervisor::{FRAMES_OF_SEARCH, LARGEST_INNOVATION, UNSEEN_STEPS},
+        supervisor::{FRAMES_OF_SEARCH, LARGEST_INNOVATION},
         turn_profile::LEAP,
         usual_agreement::{BESIDE, ELSEWHERE, FURTHER_ALONG},
     },
@@ -52,19 +52,6 @@ impl MotionFilter {
             }
         }
         self.search(time, seconds, outline)
-    }
-
-    /// Takes an object to be lost that has gone unseen for so long that nobody knows how far it has turned: linearisations would lead to any number of whole
-    /// turns, and the motion with them.
-    pub(super) fn lose_if_turn_is_unknown(&mut self, time: f64) {
-        let seconds = time - self.clock.of_track;
-        let goes_unseen =
-            |track: &&Track| self.phase == Phase::Tracking && seconds > UNSEEN_STEPS * track.belief().memory.step;
-        let Some(track) = self.track.as_ref().filter(goes_unseen) else { return };
-        let (mut expected, mut history) = (track.clone(), self.history.clone());
-        if predict(&self.settings, &mut expected, &mut history, seconds) && !expected.knows_turn() {
-            self.phase = Phase::Lost;
-        }
     }
 
     /// Searches for a lost object from a part of all turns, and goes on from the others where that leaves hope; `expected` is what became of the
@@ -350,28 +337,5 @@ impl MotionFilter {
         let change = found.pose * track.body_pose().try_inverse()?;
         track.set_motion(self.settings.model.motion_between(&change, seconds)?);
         track.predict(seconds).then_some(track)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{drawn_curves::turning, supervisor::settings::FilterSettings};
-
-    #[test]
-    fn an_object_is_lost_once_it_has_gone_unseen_for_so_long_that_its_turn_is_unknown() {
-        let egg = |t: f64| 1.0 + 0.2 * t.cos() + 0.1 * (3.0 * t).sin();
-        let mut filter = MotionFilter::new(FilterSettings::default()).expect("settings");
-        for frame in 0..2 {
-            let step = filter.step(f64::from(frame) / 30.0, &turning(frame, 400, egg)).expect("increasing times");
-            assert!(step.is_accepted(), "frame {frame}");
-        }
-        // In steps, which are about one unit of time: of two frames the turn in a step is known to a thousandth or so.
-        let step = filter.track.as_ref().expect("a track").belief().memory.step;
-        for (steps, phase) in [(1.0, Phase::Tracking), (10.0, Phase::Tracking), (1e5, Phase::Lost)] {
-            let mut later = filter.clone();
-            later.lose_if_turn_is_unknown(filter.clock.of_track + steps * step);
-            assert_eq!(later.phase, phase, "{steps} steps");
-        }
     }
 }

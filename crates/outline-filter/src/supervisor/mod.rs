@@ -29,6 +29,7 @@ mod tracking;
 mod turn_hypotheses;
 mod turn_hypothesis;
 mod turns_alike;
+mod unseen;
 mod window;
 
 pub use ambiguity::Ambiguity;

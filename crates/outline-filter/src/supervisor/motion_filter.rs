@@ -193,7 +193,9 @@ impl MotionFilter {
         let was_changing = self.history.is_changing();
         let outcome = match self.phase {
             _ if !self.shows_enough(outline) => None,
-            Phase::Tracking => self.follow(time, outline).map(|outcome| self.look_elsewhere(outcome, time, outline)),
+            Phase::Tracking => {
+                self.follow_or_lose(time, outline).map(|outcome| self.look_elsewhere(outcome, time, outline))
+            }
             _ => self.acquire(time, outline),
         };
         self.search_memory.budget.add_frame(self.phase == Phase::Tracking);
@@ -241,7 +243,7 @@ impl MotionFilter {
     }
 
     /// Predicts and measures; `None` where the object cannot be predicted, and is lost.
-    fn follow(&mut self, time: f64, outline: &Outline) -> Option<Outcome> {
+    pub(super) fn follow(&mut self, time: f64, outline: &Outline) -> Option<Outcome> {
         let turns = self.turns();
         let track = self.track.as_mut()?;
         let seconds = time - self.clock.of_track;

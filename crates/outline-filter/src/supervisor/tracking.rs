@@ -136,7 +136,8 @@ pub(super) fn advance(
         Some(apart) => found_elsewhere(outcome, settings, (track, frame), (apart, history.since_taken + seconds)),
         None => (outcome, None),
     };
-    let apart = apart.or_else(|| apart_by(settings, track, &outcome));
+    let since_taken = history.since_taken + seconds;
+    let apart = apart.or_else(|| apart_by(settings, (track, frame), &outcome, since_taken));
     history.record(&outcome, seconds, apart);
     if outcome.is_accepted()
         && let Some(dynamics) = history.dynamics.as_mut().filter(|dynamics| dynamics.leads())
@@ -160,7 +161,8 @@ pub(super) fn advance_again(
     let gates = Gates::of_accepted_frame(settings, track, history.widening(track));
     let known = (turns, Comparison::NotAsked);
     let (outcome, _) = outcome_with_changes(settings, (track, frame), history, (seconds, &gates), known);
-    history.record(&outcome, seconds, apart_by(settings, track, &outcome));
+    let apart = apart_by(settings, (track, frame), &outcome, history.since_taken + seconds);
+    history.record(&outcome, seconds, apart);
     Some(outcome)
 }
 
@@ -246,11 +248,25 @@ fn found_elsewhere(
     (outcome, Some(Apart { error, covariance, shown: Shown::Whole }))
 }
 
-/// How far the outline lies from where it was expected, as a frame tells it that shows it and was not taken.
-fn apart_by(settings: &FilterSettings, track: &Track, outcome: &Outcome) -> Option<Apart> {
+/// How far the outline lies from where it was expected, as a frame tells it that shows it and was not taken. Held to where it was expected, it may agree
+/// in part though all of it is shown.
+fn apart_by(
+    settings: &FilterSettings,
+    (track, frame): (&Track, &mut Frame),
+    outcome: &Outcome,
+    since_taken: f64,
+) -> Option<Apart> {
     let pose = outcome.pose.as_ref().filter(|_| !outcome.is_accepted())?;
-    let is_whole = outcome.measurement.agreement >= track.gate_of_all(gate(settings, track)).smallest_agreement;
-    Apart::measured(pose, if is_whole { Shown::Whole } else { Shown::InPart }, &track.null_directions())
+    let whole = track.gate_of_all(gate(settings, track));
+    let mut apart = Apart::measured(pose, Shown::InPart, &track.null_directions())?;
+    let mut displaced = track.clone();
+    let is_whole = outcome.measurement.agreement >= whole.smallest_agreement
+        || displaced.displace(&apart.error, since_taken)
+            && displaced.update(frame, &whole, Comparison::NotAsked).is_accepted();
+    if is_whole {
+        apart.shown = Shown::Whole;
+    }
+    Some(apart)
 }
 
 /// Whether a frame may show the outline elsewhere than it was expected: the sides of a bar that has moved along itself may still lie on it, and its
