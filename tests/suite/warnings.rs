@@ -80,7 +80,7 @@ const TRACING_EXAMPLES: [TracingWarning; 3] = [
 ];
 
 /// Warnings of where outlines come from that are none of tracing.
-const OF_ORIGIN: [OriginWarning; 8] = [
+const OF_ORIGIN: [OriginWarning; 9] = [
     OriginWarning::FilesOutOfOrder,
     OriginWarning::RateAssumed,
     OriginWarning::Interlaced,
@@ -89,6 +89,7 @@ const OF_ORIGIN: [OriginWarning; 8] = [
     OriginWarning::VoidBorders,
     OriginWarning::PixelAspect,
     OriginWarning::NewAfterContact,
+    OriginWarning::AmongAlike,
 ];
 
 /// Code and example of every section of the page: the lines that begin with `>`, as one.

@@ -260,8 +260,8 @@ impl Input {
     /// As that, with what only many outlines together tell, which takes a while to be looked for: after all have been read.
     pub(crate) fn closing_warnings(&self) -> Vec<(OriginWarning, String)> {
         let of_aspect = self.pictures().and_then(PictureInput::warning_of_aspect);
-        let of_contact = self.pictures().and_then(|pictures| pictures.warning_of_contact(Purpose::Motions));
-        self.origin_warnings().into_iter().chain(of_aspect).chain(of_contact).collect()
+        let of_names = self.pictures().map(|pictures| pictures.warnings_of_names(Purpose::Motions)).unwrap_or_default();
+        self.origin_warnings().into_iter().chain(of_aspect).chain(of_names).collect()
     }
 
     /// What a table has said so far of how its outlines were found.

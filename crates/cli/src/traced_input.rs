@@ -1,7 +1,7 @@
 //! Pictures as they are traced: by their grey values, or label by label.
 use freeform_motion::outline_io::{
-    AfterContact, LabelPictures, PictureError, PictureSequence, TraceSettings, TracedPicture, TracedPictures,
-    TracingSummary,
+    AfterContact, AmongAlike, LabelPictures, PictureError, PictureSequence, TraceSettings, TracedPicture,
+    TracedPictures, TracingSummary,
 };
 
 /// The pictures of an input, one after the other.
@@ -58,6 +58,14 @@ impl Traced {
     pub(crate) fn after_contact(&self) -> &[AfterContact] {
         match self {
             Self::Greys(traced) => traced.after_contact(),
+            Self::Labels(_) => &[],
+        }
+    }
+
+    /// Steps so far that objects alike may have made otherwise.
+    pub(crate) fn among_alike(&self) -> &[AmongAlike] {
+        match self {
+            Self::Greys(traced) => traced.among_alike(),
             Self::Labels(_) => &[],
         }
     }

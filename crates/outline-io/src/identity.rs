@@ -1,46 +1,17 @@
 use nalgebra::{Point2, Vector2};
 
-use crate::affine_moment_invariants::AffineMomentInvariants;
 use crate::assignment::assign;
+use crate::common_step::{CommonStep, Spot, TwoPictures};
 use crate::contacts::{AfterContact, Contacts, Place};
+use crate::known_object::{Known, LARGEST_COST};
 use crate::picture_error::TraceError;
 use crate::trace::TracedOutline;
 
 /// Most frames that an object may be missing in before it is forgotten.
 pub(crate) const PATIENCE: u64 = 15;
 
-/// Farthest that an object may be from where it is expected, in its diameters; half as much more for every frame missed.
-const REACH: f64 = 1.0;
-
-/// Farthest that an object that moves by more than its diameter may be from where it is expected, in its movement: twice that where it
-/// turns back.
-const REACH_OF_FAST: f64 = 2.2;
-
-/// Farthest that an object may have moved between its first two sightings, in its diameters, where nothing else that is
-/// like it is left over in reach in either of the two pictures.
-const FIRST_REACH: f64 = 8.0;
-
-/// An object has left its place where it is so many sizes (roots of its area) away from where it was seen first.
-pub(crate) const LEFT: f64 = 1.0;
-
-/// It moves straight on where its movement changes by no more than this share of itself, and this share of its size.
-const STRAIGHT_ON: [f64; 2] = [0.5, 0.25];
-
-/// Largest ratio of areas between sightings of what moves so far: a fast object is blurred.
-const FIRST_GROWTH: f64 = 1.5;
-
-/// Largest ratio of areas between sightings of one object of which neither is clipped.
-const LARGEST_GROWTH: f64 = 2.0;
-
-/// Ratio of areas up to which a sighting may be of one object alone where several are expected.
-const LARGEST_GROWTH_OF_ONE: f64 = 1.25;
-
-/// Distance of the affine moment invariants from which shapes are different. Between pictures of one object they change
-/// less: by up to 0.08 for a robot of 16,000 pixels, by up to 0.21 for a thin bolt of 4,500 with a blurred edge.
-const OTHER_SHAPE: f64 = 0.5;
-
-/// The cost of a sighting at the farthest place, of the largest growth and of another shape.
-const LARGEST_COST: f64 = 3.0;
+/// Steps of objects alike that are told.
+const MOST_DOUBTS: usize = 16;
 
 /// Which objects of a picture are taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -63,144 +34,6 @@ pub enum Selection {
 /// Most objects of a picture that are followed.
 pub(crate) const OBJECT_LIMIT: usize = 256;
 
-/// An object as it was last seen.
-#[derive(Debug, Clone)]
-struct Known {
-    name: u64,
-    centre: Point2<f64>,
-    /// Movement from frame to frame; `None` where it has been seen once.
-    velocity: Option<Vector2<f64>>,
-    /// How fast it moves, or half as fast as it moved before: where it turns back it may stand still for a moment.
-    speed: f64,
-    /// The area seen.
-    area: f64,
-    clipped: bool,
-    /// As it was when it was last seen whole.
-    shape: Option<AffineMomentInvariants>,
-    frame: u64,
-    /// Where it was seen first.
-    first: Point2<f64>,
-    has_left: bool,
-}
-
-/// How a sighting differs from an object.
-#[derive(Debug, Clone, Copy)]
-struct Difference {
-    /// From the place expected, in diameters.
-    distance: f64,
-    /// `distance` over the largest accepted distance.
-    place: f64,
-    /// Logarithm of the ratio of areas; `None` where that tells nothing, as what is clipped has less than its area.
-    growth: Option<f64>,
-    /// Distance of the invariants; `None` where one of them is clipped.
-    shape: Option<f64>,
-    /// Whether neither is clipped.
-    are_whole: bool,
-}
-
-impl Difference {
-    fn is_near(&self) -> bool {
-        self.place <= 1.0
-    }
-
-    fn is_alike(&self) -> bool {
-        self.growth.is_none_or(|growth| growth.abs() <= LARGEST_GROWTH.ln())
-    }
-
-    /// Whether nothing but the object can be seen there.
-    fn is_of_one(&self) -> bool {
-        self.growth.is_none_or(|growth| growth.abs() <= LARGEST_GROWTH_OF_ONE.ln())
-            && self.shape.is_none_or(|shape| shape <= OTHER_SHAPE)
-    }
-
-    /// How ill a sighting fits, up to [`LARGEST_COST`]; `None` where it cannot be the object. Another shape alone may be a
-    /// failure of the segmentation, so that it counts no more than the farthest place.
-    fn cost(&self) -> Option<f64> {
-        let growth = self.growth.map_or(0.0, |growth| growth / LARGEST_GROWTH.ln());
-        let shape = self.shape.map_or(0.0, |shape| (shape / OTHER_SHAPE).min(1.0));
-        (self.is_near() && self.is_alike()).then_some(self.place.powi(2) + growth.powi(2) + shape.powi(2))
-    }
-}
-
-impl Known {
-    fn seen(name: u64, frame: u64, traced: &TracedOutline) -> Self {
-        let (centre, area, clipped) = (traced.centre, traced.area, traced.touches_border);
-        let shape = if clipped { None } else { traced.invariants };
-        Self { name, centre, velocity: None, speed: 0.0, area, clipped, shape, frame, first: centre, has_left: false }
-    }
-
-    fn see(&mut self, frame: u64, traced: &TracedOutline) {
-        let frames = frame.saturating_sub(self.frame).max(1) as f64;
-        let velocity = (traced.centre - self.centre) / frames;
-        let speed = velocity.norm().max(0.5 * self.speed);
-        let size = traced.area.sqrt();
-        let goes_on = self.velocity.is_some_and(|before| {
-            let fastest = velocity.norm().max(before.norm());
-            (velocity - before).norm() < STRAIGHT_ON[0] * fastest + STRAIGHT_ON[1] * size
-        });
-        // After a gap it is looked for so far away that something is found by chance.
-        let follows = frame == self.frame + 1;
-        let has_left = self.has_left || follows && goes_on && (traced.centre - self.first).norm() > LEFT * size;
-        let now = Self::seen(self.name, frame, traced);
-        let (velocity, shape) = (Some(velocity), now.shape.or(self.shape));
-        *self = Self { velocity, speed, shape, first: self.first, has_left, ..now };
-    }
-
-    /// Where it should be.
-    fn expected(&self, frame: u64) -> Point2<f64> {
-        self.centre + self.velocity.unwrap_or_else(Vector2::zeros) * frame.saturating_sub(self.frame) as f64
-    }
-
-    /// The larger one of its diameter and that of a sighting, as if they were discs.
-    fn diameter(&self, traced: &TracedOutline) -> f64 {
-        (4.0 * self.area.max(traced.area) / std::f64::consts::PI).sqrt()
-    }
-
-    fn difference(&self, frame: u64, traced: &TracedOutline) -> Difference {
-        let distance = (traced.centre - self.expected(frame)).norm() / self.diameter(traced);
-        let missed = frame.saturating_sub(self.frame).saturating_sub(1) as f64;
-        let growth = (traced.area / self.area).ln();
-        // A part that is larger than the whole is of something else.
-        let tells = match (self.clipped, traced.touches_border) {
-            (false, false) => true,
-            (true, false) => growth < 0.0,
-            (false, true) => growth > 0.0,
-            (true, true) => false,
-        };
-        let shape = self.shape.zip(traced.invariants).filter(|_| !traced.touches_border);
-        Difference {
-            distance,
-            place: distance / (REACH * (1.0 + 0.5 * missed)),
-            growth: tells.then_some(growth),
-            shape: shape.map(|(known, seen)| known.distance(&seen)),
-            are_whole: !self.clipped && !traced.touches_border,
-        }
-    }
-
-    fn cost(&self, frame: u64, traced: &TracedOutline) -> Option<f64> {
-        self.difference(frame, traced).cost()
-    }
-
-    /// The same of what was seen in the frame before, if it may be far from where it is expected: as it was seen for the first time then, or as
-    /// it moves by more than its diameter and may turn back.
-    fn cost_of_far(&self, frame: u64, traced: &TracedOutline) -> Option<f64> {
-        let Difference { distance, growth: Some(growth), shape, are_whole: true, .. } = self.difference(frame, traced)
-        else {
-            return None;
-        };
-        let reach =
-            if self.velocity.is_none() { FIRST_REACH } else { REACH_OF_FAST * self.speed / self.diameter(traced) };
-        if reach < REACH_OF_FAST {
-            return None;
-        }
-        let place = distance / reach;
-        let growth = growth / FIRST_GROWTH.ln();
-        let shape = shape.map_or(0.0, |shape| shape / OTHER_SHAPE);
-        (self.frame + 1 == frame && place.max(growth.abs()).max(shape) <= 1.0)
-            .then_some(place.powi(2) + growth.powi(2) + shape.powi(2))
-    }
-}
-
 impl Place {
     fn of(frame: u64, traced: &TracedOutline) -> Self {
         Self { frame, centre: traced.centre, diameter: traced.outline.bounding_box().size().norm() }
@@ -214,13 +47,34 @@ pub struct Identities {
     known: Vec<Known>,
     next_name: u64,
     contacts: Contacts,
+    among_alike: Vec<AmongAlike>,
+    /// Width and height of the pictures, where they are known.
+    extent: Option<Vector2<f64>>,
+}
+
+/// A step that objects which look alike have made together, and that may as well have been another, as if each were a neighbour.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AmongAlike {
+    /// Number of the picture after the step.
+    pub frame: u64,
+    /// The step taken, in the unit of the outlines.
+    pub step: Vector2<f64>,
+    /// The other one, less than twice as large.
+    pub other: Vector2<f64>,
 }
 
 impl Identities {
     /// Before the first picture.
     #[must_use]
     pub fn new(selection: Selection) -> Self {
-        Self { selection, known: Vec::new(), next_name: 0, contacts: Contacts::default() }
+        let (known, contacts, among_alike) = (Vec::new(), Contacts::default(), Vec::new());
+        Self { selection, known, next_name: 0, contacts, among_alike, extent: None }
+    }
+
+    /// Says how wide and high the pictures are, in the unit of the outlines, from the origin on. What leaves them is not missed, and what enters them was
+    /// not to be seen before; of pictures of which that is not said, all is.
+    pub fn set_extent(&mut self, width: f64, height: f64) {
+        self.extent = Some(Vector2::new(width, height));
     }
 
     /// The objects so far that may be others which were forgotten while they touched something, near them and soon after, in the order of their
@@ -228,6 +82,12 @@ impl Identities {
     #[must_use]
     pub fn after_contact(&self) -> &[AfterContact] {
         self.contacts.after()
+    }
+
+    /// Steps so far that objects alike may have made otherwise, the first sixteen.
+    #[must_use]
+    pub fn among_alike(&self) -> &[AmongAlike] {
+        &self.among_alike
     }
 
     /// How many objects of a picture are needed.
@@ -313,6 +173,73 @@ impl Identities {
         (traced, touching)
     }
 
+    /// Assigns what has been seen once and looks alike so that it makes one step together, where that leaves less over than to take each for what is
+    /// nearest: of parts on a belt the nearest one is the neighbour once they move by more than half of their distance.
+    fn assign_together(&mut self, frame: u64, traced: &[TracedOutline], seen_as: &mut [Option<usize>]) {
+        let is_new = |known: &Known| known.velocity.is_none() && known.frame + 1 == frame && !known.clipped;
+        let mut before: Vec<usize> = (0..self.known.len()).filter(|known| is_new(&self.known[*known])).collect();
+        let is_open =
+            |seen: &usize| seen_as.iter().position(|of| *of == Some(*seen)).is_none_or(|of| before.contains(&of));
+        let mut now: Vec<usize> =
+            (0..traced.len()).filter(|seen| !traced[*seen].touches_border).filter(is_open).collect();
+        let (mut are_all, mut common) = (true, None);
+        while before.len() > 1 && now.len() > 1 {
+            let spots = [
+                before.iter().map(|known| self.known[*known].spot).collect(),
+                now.iter().map(|seen| Spot::of(&traced[*seen])).collect(),
+            ];
+            let is_alike = |from: usize, to: usize| self.known[before[from]].may_be_alike(&traced[now[to]]);
+            let two = TwoPictures::new(spots, is_alike, self.extent);
+            let place = |seen: usize| now.iter().position(|of| *of == seen);
+            let found = before.iter().enumerate().filter_map(|(from, known)| Some((from, place(seen_as[*known]?)?)));
+            let one_by_one = two.of_pairs(found.collect());
+            let together = two.better_than(&one_by_one);
+            let taken = together.as_ref().unwrap_or(&one_by_one);
+            let doubt = two.rival_of(taken).map(|other| AmongAlike { frame, step: taken.step, other });
+            self.among_alike.extend(doubt.filter(|_| self.among_alike.len() < MOST_DOUBTS));
+            common = common.or_else(|| (are_all && two.is_common(taken)).then_some(taken.step));
+            if let Some(CommonStep { pairs, .. }) = &together {
+                before.iter().for_each(|known| seen_as[*known] = None);
+                pairs.iter().for_each(|(from, to)| seen_as[before[*from]] = Some(now[*to]));
+            } else if !are_all {
+                break;
+            }
+            are_all = false;
+            before.retain(|known| seen_as[*known].is_none());
+            now.retain(|seen| !seen_as.contains(&Some(*seen)));
+        }
+        if let Some(step) = common {
+            self.assign_cut(frame, traced, seen_as, step);
+        }
+    }
+
+    /// Assigns what has been seen once and is cut by the border in one of two pictures, where what is whole has made a step together.
+    fn assign_cut(&self, frame: u64, traced: &[TracedOutline], seen_as: &mut [Option<usize>], step: Vector2<f64>) {
+        let is_cut = |known: usize, seen: Option<usize>| {
+            let Known { velocity, clipped, frame: last, .. } = &self.known[known];
+            let is_new = velocity.is_none() && last + 1 == frame;
+            is_new && (*clipped || seen.is_none_or(|seen| traced[seen].touches_border))
+        };
+        let cut: Vec<usize> = (0..seen_as.len()).filter(|known| is_cut(*known, seen_as[*known])).collect();
+        cut.iter().for_each(|known| seen_as[*known] = None);
+        let seen: Vec<usize> = (0..traced.len()).filter(|seen| !seen_as.contains(&Some(*seen))).collect();
+        let led: Vec<Known> = cut.iter().map(|known| self.known[*known].moving(step)).collect();
+        let cost = |known: usize, to: usize| led[known].cost(frame, &traced[seen[to]]);
+        let found = assign([cut.len(), seen.len()], cost, LARGEST_COST);
+        cut.iter().zip(found).for_each(|(known, found)| seen_as[*known] = found.map(|to| seen[to]));
+    }
+
+    /// What has been seen once, cut by the border, as it would be if it moved as the nearest thing does that has been seen more often.
+    fn led_by_neighbours(&self, frame: u64) -> Vec<Option<Known>> {
+        let is_followed = |known: &&Known| known.velocity.is_some() && known.frame + 1 == frame;
+        let led = |known: &Known| {
+            let far = |other: &&Known| (other.centre - known.centre).norm();
+            let nearest = self.known.iter().filter(is_followed).min_by(|a, b| far(a).total_cmp(&far(b)))?;
+            (known.velocity.is_none() && known.clipped).then(|| known.moving(nearest.velocity.unwrap_or_default()))
+        };
+        self.known.iter().map(led).collect()
+    }
+
     /// Assigns what is left over on both sides, which may be what moves by more than its own size.
     fn assign_far(&self, frame: u64, traced: &[TracedOutline], seen_as: &mut [Option<usize>]) {
         let known: Vec<usize> = (0..seen_as.len()).filter(|known| seen_as[*known].is_none()).collect();
@@ -332,8 +259,16 @@ impl Identities {
     }
 
     fn all(&mut self, frame: u64, traced: Vec<TracedOutline>) -> Vec<(u64, TracedOutline)> {
-        let cost = |known: usize, seen: usize| self.known[known].cost(frame, &traced[seen]);
+        let led = self.led_by_neighbours(frame);
+        let cost = |known: usize, seen: usize| {
+            let (by_itself, led) = (&self.known[known], &led[known]);
+            // What the border cuts and is not seen again at once has gone on with the others.
+            let has_left = led.is_some() && by_itself.clipped && by_itself.frame + 1 < frame;
+            let ways = [led.as_ref(), (!has_left).then_some(by_itself)].into_iter().flatten();
+            ways.filter_map(|known| known.cost(frame, &traced[seen])).min_by(f64::total_cmp)
+        };
         let mut seen_as = assign([self.known.len(), traced.len()], cost, LARGEST_COST);
+        self.assign_together(frame, &traced, &mut seen_as);
         self.assign_far(frame, &traced, &mut seen_as);
         let mut names = vec![None; traced.len()];
         for (known, seen) in self.known.iter_mut().zip(seen_as) {

@@ -28,17 +28,20 @@ pub enum OriginWarning {
     PixelAspect,
     /// An object may be another one, which touched something before and was forgotten: [`AfterContact`](crate::AfterContact).
     NewAfterContact,
+    /// Objects that look alike may have moved by another step, as if each were a neighbour: [`AmongAlike`](crate::AmongAlike).
+    AmongAlike,
 }
 
 impl OriginWarning {
     /// All of them, what makes outlines worthless first.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::TracingDoubtful,
         Self::MovesBesideRest,
         Self::MovesBeside,
         Self::FilesOutOfOrder,
         Self::LabelInParts,
         Self::NewAfterContact,
+        Self::AmongAlike,
         Self::LabelLeftOut,
         Self::PixelAspect,
         Self::RateAssumed,
@@ -61,6 +64,7 @@ impl OriginWarning {
             Self::VoidBorders => "void_borders",
             Self::PixelAspect => "pixel_aspect",
             Self::NewAfterContact => "new_after_contact",
+            Self::AmongAlike => "among_alike",
         }
     }
 
@@ -97,6 +101,9 @@ impl fmt::Display for OriginWarning {
             }
             Self::NewAfterContact => {
                 "an object may be one that was forgotten while it touched something: results of two objects may be those of one"
+            }
+            Self::AmongAlike => {
+                "objects that look alike may each have been taken for a neighbour: their velocities may be others"
             }
         })
     }

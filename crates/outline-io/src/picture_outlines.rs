@@ -11,7 +11,7 @@ use crate::background::{Background, Difference, RunningMedian};
 use crate::contacts::AfterContact;
 use crate::contrast::Contrast;
 use crate::ground_surface::ground_surface;
-use crate::identity::{Identities, Selection};
+use crate::identity::{AmongAlike, Identities, Selection};
 use crate::picture_error::{PictureError, TraceError};
 use crate::picture_sequence::PictureFrame;
 use crate::trace::{TracedOutline, trace_within};
@@ -184,6 +184,11 @@ impl<S: Iterator<Item = Result<PictureFrame, PictureError>>> PictureOutlines<S> 
         self.identities.after_contact()
     }
 
+    /// As [`Identities::among_alike`](crate::Identities::among_alike).
+    pub fn among_alike(&self) -> &[AmongAlike] {
+        self.identities.among_alike()
+    }
+
     /// The next picture, which the median knows.
     fn next_picture(&mut self) -> Option<Result<PictureFrame, PictureError>> {
         let size = match self.settings.background {
@@ -324,6 +329,10 @@ impl<S: Iterator<Item = Result<PictureFrame, PictureError>>> Iterator for Pictur
         }
         let item = self.traced.pop_front()?;
         Some(item.map(|(frame, traced)| {
+            let TraceSettings { pixel_size, pixel_aspect, .. } = self.settings.trace;
+            let [width, height] =
+                [frame.picture.width(), frame.picture.height()].map(|side| pixel_size * f64::from(side));
+            self.identities.set_extent(pixel_aspect * width, height);
             let objects = traced.and_then(|traced| self.identities.assign(frame.frame, traced));
             TracedFrame { frame, objects }
         }))

@@ -1,5 +1,6 @@
 use crate::contacts::AfterContact;
 use crate::frame::OutlineFrame;
+use crate::identity::AmongAlike;
 use crate::picture_error::{PictureError, TraceError};
 use crate::picture_outlines::{PictureOutlines, PictureSettings, TracedFrame};
 use crate::picture_sequence::PictureFrame;
@@ -96,6 +97,11 @@ impl<I: Iterator<Item = Result<PictureFrame, PictureError>>> TracedPictures<I> {
     /// As [`Identities::after_contact`](crate::Identities::after_contact).
     pub fn after_contact(&self) -> &[AfterContact] {
         self.outlines.after_contact()
+    }
+
+    /// As [`Identities::among_alike`](crate::Identities::among_alike).
+    pub fn among_alike(&self) -> &[AmongAlike] {
+        self.outlines.among_alike()
     }
 
     /// What the settings that were left open have come to so far.

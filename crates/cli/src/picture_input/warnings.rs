@@ -1,5 +1,7 @@
 //! What may be wrong with how pictures are read and traced.
-use freeform_motion::outline_io::{AfterContact, OriginWarning, OriginWarnings};
+use freeform_motion::outline_io::{AfterContact, AmongAlike, OriginWarning, OriginWarnings};
+
+use nalgebra::Vector2;
 
 use super::{ASSUMED_RATE, PictureInput, ShapeInPicture};
 use crate::label_choice::label_warnings;
@@ -38,12 +40,17 @@ impl PictureInput {
         if remarks.is_empty() {
             remarks.extend(self.warning_of_aspect());
         }
-        remarks.extend(self.warning_of_contact(purpose));
+        remarks.extend(self.warnings_of_names(purpose));
         remarks
     }
 
+    /// Which objects may be others, with the codes.
+    pub(crate) fn warnings_of_names(&self, purpose: Purpose) -> Vec<(OriginWarning, String)> {
+        self.warning_of_contact(purpose).into_iter().chain(self.warning_of_step()).collect()
+    }
+
     /// Which objects have other numbers after they have touched others, with the code.
-    pub(crate) fn warning_of_contact(&self, purpose: Purpose) -> Option<(OriginWarning, String)> {
+    fn warning_of_contact(&self, purpose: Purpose) -> Option<(OriginWarning, String)> {
         let each: Vec<String> = self.traced.after_contact().chunk_by(|a, b| a.name == b.name).map(may_be).collect();
         if each.is_empty() {
             return None;
@@ -58,10 +65,26 @@ impl PictureInput {
         Some((OriginWarning::NewAfterContact, message))
     }
 
+    /// That objects alike may have made another step, with the code.
+    fn warning_of_step(&self) -> Option<(OriginWarning, String)> {
+        let AmongAlike { frame, step, other } = *self.traced.among_alike().first()?;
+        // None is none, and not less than none.
+        let text = |step: Vector2<f64>| format!("({}, {})", step.x.round() + 0.0, step.y.round() + 0.0);
+        let message = format!(
+            "objects that look alike moved by {} up to frame {frame}, or by {} as if each were a neighbour: their velocities may be others, as those of \
+             all that follow them; more frames a second tell, or something by which they differ",
+            text(step),
+            text(other)
+        );
+        Some((OriginWarning::AmongAlike, message))
+    }
+
     /// What the rows of a table of the pictures read so far should say, beyond what was known before the first.
     pub(crate) fn told_so_far(&self) -> OriginWarnings {
-        let is_any = !self.traced.after_contact().is_empty();
-        is_any.then_some(OriginWarning::NewAfterContact).into_iter().collect()
+        let is_new = !self.traced.after_contact().is_empty();
+        let are_alike = !self.traced.among_alike().is_empty();
+        let told = [is_new.then_some(OriginWarning::NewAfterContact), are_alike.then_some(OriginWarning::AmongAlike)];
+        told.into_iter().flatten().collect()
     }
 
     /// What is wrong with the labels of masks read so far, with the codes.

@@ -6,7 +6,7 @@ use super::sight::Sight;
 use super::tuning::beside as tuning;
 use super::turning::Reach;
 use crate::affine_moment_invariants::is_within;
-use crate::identity::LEFT;
+use crate::known_object::LEFT;
 
 /// What is seen to change besides what is traced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

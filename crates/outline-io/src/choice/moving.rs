@@ -11,7 +11,8 @@ use super::tuning::chains as tuning;
 use super::{AGAINST_NOISE, PictureSample, Tracing, TracingWay};
 use crate::background::Difference;
 use crate::channel::Channel;
-use crate::identity::{LEFT, Selection};
+use crate::identity::Selection;
+use crate::known_object::LEFT;
 use crate::picture_outlines::PictureSettings;
 use crate::trace_settings::Smoothing;
 

@@ -1,6 +1,9 @@
 //! Objects keep their names from picture to picture.
 use crate::support::traced;
-use freeform_outline_io::{GrayImage, PictureSettings, Selection, TraceError, TraceSettings};
+use freeform_outline_io::{
+    AmongAlike, GrayImage, PictureFrame, PictureOutlines, PictureSettings, Selection, TraceError, TraceSettings,
+    TracedFrame,
+};
 use image::Luma;
 use nalgebra::Point2;
 
@@ -274,5 +277,82 @@ fn a_first_sighting_is_not_taken_for_one_far_away_where_something_else_is_like_i
         let traced = traced(pictures, settings);
         let names: Vec<u64> = traced[1].objects.as_ref().expect("discs").iter().map(|(name, _)| *name).collect();
         assert_eq!(names.contains(&0), is_known, "{names:?}");
+    }
+}
+
+/// Of each picture the names with their places, and whether the border cuts them.
+type Named = Vec<Vec<(u64, f64, bool)>>;
+
+/// The names of the parts of a row in so many pictures, and steps that may be others.
+fn row_of_parts(places: &[f64], step: f64, pictures: u32) -> (Named, Vec<AmongAlike>) {
+    let picture = |frame: u32| {
+        GrayImage::from_fn(500, 60, |x, y| {
+            let inside = |place: &f64| {
+                let (x, y) = (f64::from(x) - place - step * f64::from(frame), f64::from(y) - 30.0);
+                x.abs() < 20.0 && y.abs() < 12.0 && (x > -8.0 || y > -2.0)
+            };
+            Luma([if places.iter().any(inside) { 220 } else { 10 }])
+        })
+    };
+    let frame = |frame: u32| {
+        let (time, file, picture) = (f64::from(frame), String::new(), picture(frame).into());
+        Ok(PictureFrame { frame: frame.into(), time, file, picture })
+    };
+    let settings = PictureSettings { selection: Selection::All, ..PictureSettings::default() };
+    let mut outlines = PictureOutlines::new((0..pictures).map(frame), settings).expect("settings");
+    let named = |traced: TracedFrame| {
+        let objects = traced.objects.unwrap_or_default();
+        objects.iter().map(|(name, object)| (*name, object.centre.x, object.touches_border)).collect()
+    };
+    let seen = outlines.by_ref().map(|traced| named(traced.expect("a picture"))).collect();
+    (seen, outlines.among_alike().to_vec())
+}
+
+/// How many steps of one name from one picture to the next, whole in both, are and are not this one.
+fn steps_of_names(seen: &Named, step: f64) -> [usize; 2] {
+    let mut counts = [0, 0];
+    for pair in seen.windows(2) {
+        for (name, x, _) in pair[1].iter().filter(|object| !object.2) {
+            let before = pair[0].iter().find(|object| object.0 == *name && !object.2);
+            if let Some((_, from, _)) = before {
+                counts[usize::from((x - from - step).abs() > 2.0)] += 1;
+            }
+        }
+    }
+    counts
+}
+
+/// Of parts of which the neighbour was nearer than they were themselves, every second picture was left out, and two steps less the distance to the
+/// neighbour were stated for one.
+#[test]
+fn parts_in_a_row_keep_their_names_however_fast_they_move_together() {
+    for step in [30.0, 45.0, 55.0, -45.0] {
+        let first = if step > 0.0 { 40.0 } else { 160.0 };
+        let (seen, doubts) = row_of_parts(&[0.0, 100.0, 200.0, 300.0].map(|x| x + first), step, 4);
+        assert_eq!(steps_of_names(&seen, step)[1], 0, "{step}: {seen:?}");
+        assert!(seen.iter().flatten().all(|object| object.0 < 4), "{step}: {seen:?}");
+        assert!(doubts.is_empty(), "{step}: {doubts:?}");
+    }
+}
+
+#[test]
+fn parts_of_a_belt_make_the_smallest_step_and_it_is_said_where_that_may_be_another() {
+    let belt: Vec<f64> = (-20..25).map(|i| 100.0 * f64::from(i) + 13.0).collect();
+    for (step, taken, is_told) in
+        [(0.0, 0.0, false), (12.0, 12.0, false), (30.0, 30.0, false), (42.0, 42.0, true), (60.0, -40.0, true)]
+    {
+        let (seen, doubts) = row_of_parts(&belt, step, 20);
+        let [right, wrong] = steps_of_names(&seen, taken);
+        assert!(wrong == 0 && right >= 50, "{step}: {right} {wrong}");
+        assert_eq!(!doubts.is_empty(), is_told, "{step}: {doubts:?}");
+        // No name is given to two parts that leave the picture one after the other.
+        let last = |name: u64| seen.iter().rposition(|objects| objects.iter().any(|object| object.0 == name));
+        let names = seen.iter().flatten().map(|object| object.0).max().expect("objects");
+        for name in 0..=names {
+            let pictures = seen.iter().filter(|objects| objects.iter().any(|object| object.0 == name)).count();
+            let first =
+                seen.iter().position(|objects| objects.iter().any(|object| object.0 == name)).expect("a picture");
+            assert_eq!(last(name), Some(first + pictures - 1), "{step}: {name}");
+        }
     }
 }
