@@ -18,6 +18,12 @@ const LEAST_RARE: f64 = 16.0;
 const RAREST: u64 = 16;
 const RARE_SHARE: u64 = 20;
 
+/// One in so many, where what is around them is known to be ground.
+const SHARE_ON_GROUND: u64 = 4;
+
+/// Side of the square of pixels by which a corner of a picture is judged.
+const CORNER: u32 = 8;
+
 /// The grey value that parts objects from the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -70,7 +76,12 @@ impl Levels {
                     let clear = stands_out(&counts[..split], ground.unwrap_or(0.0), object);
                     if let Err(error) = clear {
                         // The classes of Otsu's method are those of the ground where objects have too few pixels to make one.
-                        return Self::of_rare(&counts).ok_or(error);
+                        return Self::of_rare(&counts, RARE_SHARE).ok_or(error);
+                    }
+                    // So they are where something on the other side of the ground comes into the picture, such as a light hand beside a dark object.
+                    let is_ground = || is_around(picture, contrast, split);
+                    if let Some(rare) = is_ground().then(|| Self::of_rare(&counts, SHARE_ON_GROUND)).flatten() {
+                        return Ok(rare);
                     }
                 }
                 let ground = ground.unwrap_or(0.0);
@@ -97,15 +108,30 @@ fn histogram(picture: &GrayImage, contrast: Contrast) -> [u64; 256] {
 }
 
 impl Levels {
-    /// Levels of objects that have few pixels, far beyond the noise of the ground; `None` where nothing is there.
-    fn of_rare(counts: &[u64; 256]) -> Option<Self> {
+    /// Levels of objects that have few pixels, one in `share` at most, far beyond the noise of the ground; `None` where nothing is there.
+    fn of_rare(counts: &[u64; 256], share: u64) -> Option<Self> {
         let ground = median(counts, 0)?;
         let least = (ground + (RARE_STANDS_OUT * spread(counts, ground)).max(LEAST_RARE)).ceil() as usize;
         let rare = counts.get(least..)?;
         let (few, all): (u64, u64) = (rare.iter().sum(), counts.iter().sum());
-        let object = median(rare, least).filter(|_| RAREST <= few && RARE_SHARE * few <= all)?;
+        let object = median(rare, least).filter(|_| RAREST <= few && share * few <= all)?;
         Some(Self { threshold: 0.5 * (ground + object), ground, object, two_valued: false })
     }
+}
+
+/// Whether a class of grey values is that of the ground: it has more than half of the picture and three of its corners or more.
+fn is_around(picture: &GrayImage, contrast: Contrast, split: usize) -> bool {
+    let is_of_class = |value: &u8| usize::from(signal(*value, contrast)) >= split;
+    let (width, height) = picture.dimensions();
+    let side = CORNER.min(width).min(height);
+    let corners = [(0, 0), (width - side, 0), (0, height - side), (width - side, height - side)];
+    let has_corner = |(left, top): &(u32, u32)| {
+        let square = || (0..side * side).map(|k| picture.get_pixel(left + k % side, top + k / side).0[0]);
+        2 * square().filter(is_of_class).count() > square().count()
+    };
+    let pixels = picture.as_raw();
+    corners.iter().filter(|corner| has_corner(corner)).count() >= 3
+        && 2 * pixels.iter().filter(|value| is_of_class(value)).count() > pixels.len()
 }
 
 /// Refuses classes that are no further apart than noise, or a ground that grows lighter to one side, is split into.

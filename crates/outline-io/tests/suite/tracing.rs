@@ -145,6 +145,31 @@ fn dark_objects_on_light_ground_are_traced_on_request() {
     assert_eq!(trace_mask(&dark, &settings).expect("a disc").outline, trace(&light).outline);
 }
 
+/// The threshold fell between the light thing and the ground, so that the ground was the dark object and the outline that of the light thing.
+#[test]
+fn a_dark_object_is_traced_also_where_something_lighter_than_the_ground_comes_in() {
+    for reach in [0.0, 20.0, 60.0] {
+        let picture = GrayImage::from_fn(200, 150, |column, row| {
+            let (x, y) = (f64::from(column), f64::from(row));
+            let is_dark = (40.0..80.0).contains(&x) && (50.0..90.0).contains(&y);
+            let is_light = x > 199.0 - reach && (60.0..110.0).contains(&y);
+            // A ground that is lighter to one side.
+            let ground = 90.0 + 0.05 * x + 3.0 * ((7 * column + 5 * row) % 11) as f64 / 11.0;
+            Luma([if is_dark {
+                30.0
+            } else if is_light {
+                210.0
+            } else {
+                ground
+            } as u8])
+        });
+        let settings = TraceSettings { contrast: Contrast::DarkOnLight, ..TraceSettings::default() };
+        let traced = trace_mask(&picture, &settings).expect("a square");
+        assert!((traced.area / 1600.0 - 1.0).abs() < 0.05, "{reach}: {}", traced.area);
+        assert!(!traced.touches_border, "{reach}");
+    }
+}
+
 #[test]
 fn the_largest_object_is_traced_and_the_others_do_not_bend_it() {
     let alone = disc_mask(100, (40.0, 40.0), 20.0);
