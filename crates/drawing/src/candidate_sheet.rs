@@ -171,7 +171,7 @@ mod tests {
             objects: 1,
             second: 0.0,
             selection: Selection::Largest,
-            inner_share: 0.0,
+            largest_hole: 0.0,
             has_steady_contours: false,
             score,
         }

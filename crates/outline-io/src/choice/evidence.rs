@@ -37,9 +37,9 @@ pub struct TracingEvidence {
     /// Which objects are worth to be followed: all where several are of its size, or where it rests and another one moves; those that move where it
     /// was chosen as it moves.
     pub selection: Selection,
-    /// Share of its area that holes and marks have.
-    pub inner_share: f64,
-    /// Whether holes or marks within it, of less than half of its area, are the same all the time.
+    /// Share of its area that the largest of its holes and marks has.
+    pub largest_hole: f64,
+    /// Whether holes or marks within it, each of less than half of its area, are the same all the time.
     pub has_steady_contours: bool,
     /// All of it together, 0 to 1.
     pub score: f64,
@@ -114,7 +114,7 @@ pub(super) fn evidence_of(trial: &Trial, tracing: Tracing, sights: &[Sight]) -> 
         objects,
         second,
         selection: if objects > 1 { Selection::All } else { Selection::Largest },
-        inner_share: of(&|sight| sight.inner.0)?,
+        largest_hole: of(&|sight| sight.inner.largest)?,
         has_steady_contours: has_steady_contours(&whole),
         score,
     })
@@ -122,10 +122,11 @@ pub(super) fn evidence_of(trial: &Trial, tracing: Tracing, sights: &[Sight]) -> 
 
 /// Whether nearly all show the same number of holes and marks, of the same area together.
 fn has_steady_contours(whole: &[&Sight]) -> bool {
-    let Some(count) = median(whole.iter().map(|sight| sight.inner.1 as f64)) else { return false };
-    let Some(area) = median(whole.iter().map(|sight| sight.inner.0)) else { return false };
-    let is_same = |sight: &&&Sight| sight.inner.1 as f64 == count && (sight.inner.0 / area).ln().abs() < 0.1;
-    whole.len() > 2 && count > 0.0 && area < LINE && whole.iter().filter(is_same).count() * 10 >= whole.len() * 8
+    let Some(count) = median(whole.iter().map(|sight| sight.inner.count as f64)) else { return false };
+    let Some(area) = median(whole.iter().map(|sight| sight.inner.share)) else { return false };
+    let Some(largest) = median(whole.iter().map(|sight| sight.inner.largest)) else { return false };
+    let is_same = |sight: &&&Sight| sight.inner.count as f64 == count && (sight.inner.share / area).ln().abs() < 0.1;
+    whole.len() > 2 && count > 0.0 && largest < LINE && whole.iter().filter(is_same).count() * 10 >= whole.len() * 8
 }
 
 /// How many of the sights are like the one that most are like.

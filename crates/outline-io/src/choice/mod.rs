@@ -87,7 +87,7 @@ const GOOD: f64 = 0.5;
 /// Below this, speckles may spoil it.
 const WEAK: f64 = 0.2;
 
-/// Holes of more than this share of an object leave no more than a line of it.
+/// A hole of more than this share of an object leaves no more than a line of it; the spokes of a wheel are between several.
 pub(crate) const LINE: f64 = 0.5;
 
 /// Score that another channel than the luminance must be better by.
@@ -350,7 +350,7 @@ fn tried(sample: &PictureSample, base: &PictureSettings, channel: Channel) -> Ve
 /// What a way is sorted by.
 fn worth(candidate: &TracingEvidence) -> f64 {
     // Where a line is all that is seen, the rings are made for it: they do without a threshold, and take no gap for an opening.
-    let line = if candidate.inner_share > LINE && !candidate.tracing.way.is_ring() { 0.85 } else { 1.0 };
+    let line = if candidate.largest_hole > LINE && !candidate.tracing.way.is_ring() { 0.85 } else { 1.0 };
     // Another channel is to be worth it: compression spoils what is not luminance.
     let channel = if candidate.tracing.channel == Channel::Luminance { 0.0 } else { WORTH_OF_LUMINANCE };
     (candidate.score * candidate.tracing.preference() - channel) * line

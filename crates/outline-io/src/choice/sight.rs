@@ -10,6 +10,16 @@ use crate::trace::TracedOutline;
 /// Points of an outline where the contrast is looked at.
 const PLACES: usize = 64;
 
+/// Holes and marks within an object.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Inner {
+    /// Their area together, over that of the object.
+    pub(super) share: f64,
+    /// That of the largest.
+    pub(super) largest: f64,
+    pub(super) count: usize,
+}
+
 /// What was found in a picture.
 #[derive(Clone)]
 pub(super) struct Sight {
@@ -22,8 +32,7 @@ pub(super) struct Sight {
     pub(super) contrast: f64,
     /// Objects of at least half the area, and all.
     pub(super) objects: [usize; 2],
-    /// Areas of its holes and marks together, over its own, and their number.
-    pub(super) inner: (f64, usize),
+    pub(super) inner: Inner,
     /// Area of the largest other one, over its own.
     pub(super) second: f64,
 }
@@ -60,7 +69,8 @@ impl Sight {
         let boundary = chosen.outline.pieces().next().map_or(&[][..], |piece| piece.points);
         let points: Vec<Point2<f64>> = boundary.to_vec();
         let inner = chosen.outline.pieces().skip(1).map(|piece| area_of(piece.points) / chosen.area);
-        let inner = (inner.clone().sum(), inner.count());
+        let inner =
+            Inner { share: inner.clone().sum(), largest: inner.clone().fold(0.0, f64::max), count: inner.count() };
         Self {
             frame,
             centre: chosen.centre,

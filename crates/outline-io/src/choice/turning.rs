@@ -95,7 +95,7 @@ mod tests {
         let centre = Point2::new(160.0, 120.0);
         let at = |k: usize| k as f64 / 700.0 * TAU;
         let points = (0..700).map(|k| centre + reach(at(k)) * Vector2::new(at(k).cos(), at(k).sin())).collect();
-        let (contrast, objects, inner) = (1.0, [1, 1], (0.0, 0));
+        let (contrast, objects, inner) = (1.0, [1, 1], crate::choice::sight::Inner::default());
         Sight {
             frame: 0,
             centre,
