@@ -1,7 +1,8 @@
+use freeform_curve_fit::Rectangle;
 use nalgebra::{Point2, Vector2};
 
 use crate::assignment::assign;
-use crate::common_step::{CommonStep, Spot, TwoPictures};
+use crate::common_step::{Assignment, Spot, TwoPictures};
 use crate::contacts::{AfterContact, Contacts, Place};
 use crate::known_object::{Known, LARGEST_COST};
 use crate::picture_error::TraceError;
@@ -9,6 +10,9 @@ use crate::trace::TracedOutline;
 
 /// Most frames that an object may be missing in before it is forgotten.
 pub(crate) const PATIENCE: u64 = 15;
+
+/// Where things beside it move, what is cut by the border stays if it is within so many diameters of where it was.
+const STAYS: f64 = 0.1;
 
 /// Steps of objects alike that are told.
 const MOST_DOUBTS: usize = 16;
@@ -48,8 +52,8 @@ pub struct Identities {
     next_name: u64,
     contacts: Contacts,
     among_alike: Vec<AmongAlike>,
-    /// Width and height of the pictures, where they are known.
-    extent: Option<Vector2<f64>>,
+    /// What the pictures show of the plane, where that is known.
+    extent: Option<Rectangle>,
 }
 
 /// A step that objects which look alike have made together, and that may as well have been another, as if each were a neighbour.
@@ -57,7 +61,7 @@ pub struct Identities {
 pub struct AmongAlike {
     /// Number of the picture after the step.
     pub frame: u64,
-    /// The step taken, in the unit of the outlines.
+    /// The step taken, from the picture before to it, in the unit of the outlines.
     pub step: Vector2<f64>,
     /// The other one, less than twice as large.
     pub other: Vector2<f64>,
@@ -71,10 +75,10 @@ impl Identities {
         Self { selection, known, next_name: 0, contacts, among_alike, extent: None }
     }
 
-    /// Says how wide and high the pictures are, in the unit of the outlines, from the origin on. What leaves them is not missed, and what enters them was
-    /// not to be seen before; of pictures of which that is not said, all is.
-    pub fn set_extent(&mut self, width: f64, height: f64) {
-        self.extent = Some(Vector2::new(width, height));
+    /// Says what the pictures show of the plane, in the unit of the outlines. What leaves it is not missed, and what enters it was not to be seen before; of
+    /// pictures of which that is not said, all is.
+    pub fn set_extent(&mut self, extent: Rectangle) {
+        self.extent = Some(extent);
     }
 
     /// The objects so far that may be others which were forgotten while they touched something, near them and soon after, in the order of their
@@ -182,8 +186,9 @@ impl Identities {
             |seen: &usize| seen_as.iter().position(|of| *of == Some(*seen)).is_none_or(|of| before.contains(&of));
         let mut now: Vec<usize> =
             (0..traced.len()).filter(|seen| !traced[*seen].touches_border).filter(is_open).collect();
+        let by_themselves = seen_as.to_vec();
         let (mut are_all, mut common) = (true, None);
-        while before.len() > 1 && now.len() > 1 {
+        while !before.is_empty() && now.len() > 1 {
             let spots = [
                 before.iter().map(|known| self.known[*known].spot).collect(),
                 now.iter().map(|seen| Spot::of(&traced[*seen])).collect(),
@@ -192,13 +197,15 @@ impl Identities {
             let two = TwoPictures::new(spots, is_alike, self.extent);
             let place = |seen: usize| now.iter().position(|of| *of == seen);
             let found = before.iter().enumerate().filter_map(|(from, known)| Some((from, place(seen_as[*known]?)?)));
-            let one_by_one = two.of_pairs(found.collect());
+            let one_by_one = two.one_by_one(found.collect());
             let together = two.better_than(&one_by_one);
             let taken = together.as_ref().unwrap_or(&one_by_one);
-            let doubt = two.rival_of(taken).map(|other| AmongAlike { frame, step: taken.step, other });
-            self.among_alike.extend(doubt.filter(|_| self.among_alike.len() < MOST_DOUBTS));
-            common = common.or_else(|| (are_all && two.is_common(taken)).then_some(taken.step));
-            if let Some(CommonStep { pairs, .. }) = &together {
+            if let Some(shared) = two.shared(taken) {
+                let doubt = two.rival_of(&shared, taken).map(|other| AmongAlike { frame, step: shared.step, other });
+                self.among_alike.extend(doubt.filter(|_| self.among_alike.len() < MOST_DOUBTS));
+                common = common.or_else(|| are_all.then_some(shared.step));
+            }
+            if let Some(Assignment { pairs, .. }) = &together {
                 before.iter().for_each(|known| seen_as[*known] = None);
                 pairs.iter().for_each(|(from, to)| seen_as[before[*from]] = Some(now[*to]));
             } else if !are_all {
@@ -208,23 +215,38 @@ impl Identities {
             before.retain(|known| seen_as[*known].is_none());
             now.retain(|seen| !seen_as.contains(&Some(*seen)));
         }
+        // What does not make the step is what it was by itself, where nothing else is that now.
+        for known in before {
+            let seen = by_themselves[known].filter(|seen| !seen_as.contains(&Some(*seen)));
+            seen_as[known] = seen_as[known].or(seen);
+        }
         if let Some(step) = common {
             self.assign_cut(frame, traced, seen_as, step);
         }
     }
 
-    /// Assigns what has been seen once and is cut by the border in one of two pictures, where what is whole has made a step together.
+    /// Assigns what has been seen once and is cut by the border in one of two pictures, where things that are whole have made a step together: so that it
+    /// makes the step too, or stays where it is.
     fn assign_cut(&self, frame: u64, traced: &[TracedOutline], seen_as: &mut [Option<usize>], step: Vector2<f64>) {
-        let is_cut = |known: usize, seen: Option<usize>| {
-            let Known { velocity, clipped, frame: last, .. } = &self.known[known];
+        let is_cut = |known: &usize| {
+            let Known { velocity, clipped, frame: last, .. } = &self.known[*known];
             let is_new = velocity.is_none() && last + 1 == frame;
-            is_new && (*clipped || seen.is_none_or(|seen| traced[seen].touches_border))
+            is_new && (*clipped || seen_as[*known].is_none_or(|seen| traced[seen].touches_border))
         };
-        let cut: Vec<usize> = (0..seen_as.len()).filter(|known| is_cut(*known, seen_as[*known])).collect();
+        let cut: Vec<usize> = (0..seen_as.len()).filter(is_cut).collect();
         cut.iter().for_each(|known| seen_as[*known] = None);
         let seen: Vec<usize> = (0..traced.len()).filter(|seen| !seen_as.contains(&Some(*seen))).collect();
         let led: Vec<Known> = cut.iter().map(|known| self.known[*known].moving(step)).collect();
-        let cost = |known: usize, to: usize| led[known].cost(frame, &traced[seen[to]]);
+        let cost = |k: usize, to: usize| {
+            let (known, traced) = (&self.known[cut[k]], &traced[seen[to]]);
+            // What is whole in both pictures has been looked at.
+            if !known.clipped && !traced.touches_border {
+                return None;
+            }
+            let stays = known.difference(frame, traced).distance < STAYS;
+            let ways = [Some(&led[k]), stays.then_some(known)].into_iter().flatten();
+            ways.filter_map(|known| known.cost(frame, traced)).min_by(f64::total_cmp)
+        };
         let found = assign([cut.len(), seen.len()], cost, LARGEST_COST);
         cut.iter().zip(found).for_each(|(known, found)| seen_as[*known] = found.map(|to| seen[to]));
     }
@@ -233,9 +255,11 @@ impl Identities {
     fn led_by_neighbours(&self, frame: u64) -> Vec<Option<Known>> {
         let is_followed = |known: &&Known| known.velocity.is_some() && known.frame + 1 == frame;
         let led = |known: &Known| {
+            let is_new = known.velocity.is_none() && known.clipped;
             let far = |other: &&Known| (other.centre - known.centre).norm();
-            let nearest = self.known.iter().filter(is_followed).min_by(|a, b| far(a).total_cmp(&far(b)))?;
-            (known.velocity.is_none() && known.clipped).then(|| known.moving(nearest.velocity.unwrap_or_default()))
+            let followed = self.known.iter().filter(is_followed).filter(|_| is_new);
+            let nearest = followed.min_by(|a, b| far(a).total_cmp(&far(b)))?;
+            nearest.velocity.map(|velocity| known.moving(velocity))
         };
         self.known.iter().map(led).collect()
     }

@@ -329,10 +329,7 @@ impl<S: Iterator<Item = Result<PictureFrame, PictureError>>> Iterator for Pictur
         }
         let item = self.traced.pop_front()?;
         Some(item.map(|(frame, traced)| {
-            let TraceSettings { pixel_size, pixel_aspect, .. } = self.settings.trace;
-            let [width, height] =
-                [frame.picture.width(), frame.picture.height()].map(|side| pixel_size * f64::from(side));
-            self.identities.set_extent(pixel_aspect * width, height);
+            self.identities.set_extent(self.settings.trace.extent(frame.picture.dimensions()));
             let objects = traced.and_then(|traced| self.identities.assign(frame.frame, traced));
             TracedFrame { frame, objects }
         }))

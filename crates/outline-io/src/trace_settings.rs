@@ -1,4 +1,4 @@
-use freeform_curve_fit::PixelGrid;
+use freeform_curve_fit::{PixelGrid, Rectangle};
 use nalgebra::{Point2, Vector2};
 
 use crate::contrast::Contrast;
@@ -151,6 +151,16 @@ impl TraceSettings {
     #[must_use]
     pub fn pixel(&self) -> f64 {
         self.pixel_grid(0).pixel_size().max()
+    }
+
+    /// What of a picture of this width and height is looked at, within its margins, in the plane of its outlines.
+    #[must_use]
+    pub fn extent(&self, (width, height): (u32, u32)) -> Rectangle {
+        let Margins { left, top, right, bottom } = self.margins.unwrap_or_default();
+        let grid = self.pixel_grid(height);
+        let corner = |column: u32, row: u32| grid.to_plane(f64::from(column), f64::from(row));
+        let (first, last) = (corner(left, top), corner(width.saturating_sub(right), height.saturating_sub(bottom)));
+        Rectangle { low: first, high: first }.extended([&last])
     }
 
     /// How the pixels of a picture of this height lie in the plane of its outlines.

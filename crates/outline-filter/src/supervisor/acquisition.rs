@@ -3,8 +3,9 @@ use freeform_curve_fit::Outline;
 
 use super::{
     candidate::{Candidate, VerdictOf},
+    gates::gate,
     motion_filter::{MotionFilter, Phase},
-    tracking::{gate, predict},
+    tracking::predict,
     turn_hypotheses::TurnHypotheses,
 };
 use crate::{

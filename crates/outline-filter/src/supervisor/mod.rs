@@ -8,6 +8,7 @@ mod counts;
 mod edges;
 mod error;
 mod expected_outline;
+mod gates;
 mod initialisation;
 mod motion_change;
 mod motion_filter;

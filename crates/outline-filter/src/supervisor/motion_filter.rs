@@ -193,9 +193,7 @@ impl MotionFilter {
         let was_changing = self.history.is_changing();
         let outcome = match self.phase {
             _ if !self.shows_enough(outline) => None,
-            Phase::Tracking => {
-                self.follow_or_lose(time, outline).map(|outcome| self.look_elsewhere(outcome, time, outline))
-            }
+            Phase::Tracking => self.follow_or_lose(time, outline),
             _ => self.acquire(time, outline),
         };
         self.search_memory.budget.add_frame(self.phase == Phase::Tracking);

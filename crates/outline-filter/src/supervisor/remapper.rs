@@ -1,7 +1,8 @@
 //! Frames of a window taken one by one on a map cut anew.
 use super::{
+    gates::Turns,
     settings::FilterSettings,
-    tracking::{Turns, advance_again},
+    tracking::advance_again,
     window::{InitialisationWindow, Remapped},
 };
 use crate::{

@@ -5,9 +5,9 @@ use freeform_estimate::StateFormat;
 use freeform_riccati::MotionModel;
 
 use super::{
+    gates::Turns,
     motion_filter::{MotionFilter, Phase},
     remapper::Remapper,
-    tracking::Turns,
     turn_hypotheses::TurnHypotheses,
     window::{InitialisationWindow, Remapped},
 };

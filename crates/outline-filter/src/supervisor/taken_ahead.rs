@@ -1,8 +1,8 @@
 //! Frames kept that a track and its rivals take on cells cut anew, taken between two frames.
 use super::{
+    gates::Turns,
     initialisation::frames_at_once,
     motion_filter::{MotionFilter, Phase},
-    tracking::Turns,
     window::Remapped,
 };
 

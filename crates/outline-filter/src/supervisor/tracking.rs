@@ -1,7 +1,6 @@
 //! A track moved on to a frame, and the changes of its motion found.
-use std::f64::consts::TAU;
-
 use super::{
+    gates::{Gates, Steadiness, Turns, gate},
     motion_change::{Apart, MotionHistory, PoseVector, Shown},
     settings::FilterSettings,
 };
@@ -11,106 +10,9 @@ use crate::{
     prediction::{PoseMatrix, TimeOfChange},
     search::displacement_nearby,
     track::{Comparison, Outcome, Track},
-    tuning::{
-        noise::LARGEST_RATIO,
-        symmetry::NEARBY,
-        update::{PARTLY_THERE, SUDDEN},
-    },
+    tuning::update::PARTLY_THERE,
     update::{Gate, Rejection},
 };
-
-/// Largest squared innovation of a motion that goes on as it was.
-pub(super) fn largest_innovation(track: &Track) -> f64 {
-    SUDDEN * track.model().parameter_count() as f64
-}
-
-/// The gate for a frame of a track wherever its motion has led, noise included. Edges that may lie off do so elsewhere in every frame.
-pub(super) fn gate(settings: &FilterSettings, track: &Track) -> Gate {
-    let largest_noise = track.largest_noise().hypot(LARGEST_RATIO * settings.edge_uncertainty);
-    Gate {
-        smallest_agreement: settings.smallest_agreement,
-        largest_innovation: None,
-        largest_noise: Some(largest_noise),
-    }
-}
-
-/// Whether anything says that a motion goes on as it was.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Steadiness {
-    /// Several frames have.
-    Told,
-    /// It is known from one step alone, so that nothing does: an object that shows all of its outline elsewhere is there, unless that is another turn.
-    Untold,
-    /// The frame before was not taken: a second one is not wrong by chance.
-    Contradicted,
-}
-
-/// Whether an outline explains a frame in one turn alone. A search from where the object was expected may lead to others.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Turns {
-    One,
-    /// It looks the same after so many parts of a whole turn.
-    Symmetric {
-        order: usize,
-    },
-    /// It looks nearly the same after some, or the same, and nothing says which it was.
-    Several,
-}
-
-impl Turns {
-    /// Whether one that is found by a search that turns the object by so much, rad, is the one that was expected.
-    fn is_expected(self, turn: f64) -> bool {
-        match self {
-            Self::One => true,
-            Self::Symmetric { order } => turn.abs() < NEARBY * TAU / order as f64,
-            Self::Several => false,
-        }
-    }
-}
-
-/// What a frame is judged by.
-struct Gates {
-    /// Where the motion has gone on as it was.
-    as_before: Gate,
-    /// Where it may have changed at once, by as much as linearisations show.
-    after_sudden_change: Option<Gate>,
-    /// Where it may have changed at once, by as much as a search shows that begins where the object was expected.
-    nearby: Option<Gate>,
-}
-
-impl Gates {
-    /// Of a frame that is new, of a motion that is so `steady`.
-    fn of_new_frame(
-        settings: &FilterSettings,
-        track: &Track,
-        widening: f64,
-        (steady, turns): (Steadiness, Turns),
-    ) -> Self {
-        let anywhere = gate(settings, track);
-        let as_before = Gate { largest_innovation: Some(widening * largest_innovation(track)), ..anywhere };
-        let nearby = Some(track.gate_of_all(anywhere));
-        let (after_sudden_change, nearby) = match steady {
-            Steadiness::Told => (None, None),
-            Steadiness::Untold => (nearby.filter(|_| turns == Turns::One), nearby),
-            Steadiness::Contradicted => (Some(anywhere), nearby),
-        };
-        let or_none = |gate: Option<Gate>| gate.filter(|_| settings.finds_changes());
-        Self { as_before, after_sudden_change: or_none(after_sudden_change), nearby: or_none(nearby) }
-    }
-
-    /// Of a frame that was accepted once. The noise of its few points on cells seen before tells less.
-    fn of_accepted_frame(settings: &FilterSettings, track: &Track, widening: f64) -> Self {
-        let anywhere = gate(settings, track).without_noise();
-        if !settings.finds_changes() {
-            return Self { as_before: anywhere, after_sudden_change: None, nearby: None };
-        }
-        Self {
-            as_before: Gate { largest_innovation: Some(widening * largest_innovation(track)), ..anywhere },
-            after_sudden_change: Some(anywhere),
-            nearby: Some(track.gate_of_all(anywhere)),
-        }
-    }
-}
 
 /// Predicts a track over so many seconds, measures the loaded frame, which is new, and finds how the motion changes. `None` where the
 /// object is lost, since it [cannot be predicted](Track::predict).
@@ -230,22 +132,40 @@ fn found_elsewhere(
     let whole = track.gate_of_all(gate(settings, track));
     // Points of an object that has been at rest scatter more once it moves. Where that is all that speaks against a frame, they must scatter less there.
     let whole = if is_noisy { whole } else { whole.without_noise() };
-    let mut displaced = track.clone();
-    let is_displaced = whole.verdict(&outcome.measurement).is_err() && displaced.displace(&error, since_taken);
-    let begun = *displaced.body_pose();
-    let found = is_displaced.then(|| displaced.update(frame, &whole, Comparison::NotAsked));
-    let Some(found) = found.filter(Outcome::is_accepted) else {
+    let is_apart = whole.verdict(&outcome.measurement).is_err();
+    let found = is_apart.then(|| whole_at((track, frame), (&error, since_taken), &whole)).flatten();
+    let Some((apart, distance)) = found else {
         let in_part = Apart { error, covariance: PoseMatrix::zeros(), shown: Shown::InPart };
         return (outcome, (!is_noisy).then_some(in_part));
     };
-    // As the frame by itself shows it, whatever was expected.
-    let measured = found.pose.as_ref().and_then(|pose| Apart::measured(pose, Shown::Whole, &track.null_directions()));
-    let from_expected =
-        measured.and_then(|apart| Some((track.error_to(&track.pose_off_by(&apart.error, &begun))?, apart.covariance)));
-    let (error, covariance) = from_expected.unwrap_or((error, PoseMatrix::zeros()));
-    let distance = track.in_image_lengths(displaced.displacement_from(track.body_pose()));
     let outcome = Outcome { verdict: Err(Rejection::Elsewhere { distance }), ..outcome };
-    (outcome, Some(Apart { error, covariance, shown: Shown::Whole }))
+    (outcome, Some(apart))
+}
+
+/// How far from where it was expected a frame shows all of the outline, if it does where it is off by an error, as the frame by itself tells it, whatever
+/// was expected; and the distance, root mean square over the outline, image lengths.
+fn whole_at(
+    (track, frame): (&Track, &mut Frame),
+    (error, since_taken): (&PoseVector, f64),
+    whole: &Gate,
+) -> Option<(Apart, f64)> {
+    let mut displaced = track.clone();
+    if !displaced.displace(error, since_taken) {
+        return None;
+    }
+    let begun = *displaced.body_pose();
+    let found = displaced.update(frame, whole, Comparison::NotAsked);
+    if !found.is_accepted() {
+        return None;
+    }
+    let measured = found.pose.as_ref().and_then(|pose| Apart::measured(pose, Shown::Whole, &track.null_directions()));
+    let from_expected = measured.and_then(|apart| {
+        let error = track.error_to(&track.pose_off_by(&apart.error, &begun))?;
+        Some(Apart { error, ..apart })
+    });
+    let as_displaced = Apart { error: *error, covariance: PoseMatrix::zeros(), shown: Shown::Whole };
+    let distance = track.in_image_lengths(displaced.displacement_from(track.body_pose()));
+    Some((from_expected.unwrap_or(as_displaced), distance))
 }
 
 /// How far the outline lies from where it was expected, as a frame tells it that shows it and was not taken. Held to where it was expected, it may agree
@@ -258,15 +178,14 @@ fn apart_by(
 ) -> Option<Apart> {
     let pose = outcome.pose.as_ref().filter(|_| !outcome.is_accepted())?;
     let whole = track.gate_of_all(gate(settings, track));
-    let mut apart = Apart::measured(pose, Shown::InPart, &track.null_directions())?;
-    let mut displaced = track.clone();
-    let is_whole = outcome.measurement.agreement >= whole.smallest_agreement
-        || displaced.displace(&apart.error, since_taken)
-            && displaced.update(frame, &whole, Comparison::NotAsked).is_accepted();
-    if is_whole {
-        apart.shown = Shown::Whole;
-    }
-    Some(apart)
+    let is_whole = outcome.measurement.agreement >= whole.smallest_agreement;
+    let shown = if is_whole { Shown::Whole } else { Shown::InPart };
+    let apart = Apart::measured(pose, shown, &track.null_directions())?;
+    let elsewhere = (!is_whole)
+        .then(|| whole_at((track, frame), (&apart.error, since_taken), &whole))
+        .flatten()
+        .map(|found| found.0);
+    Some(elsewhere.unwrap_or(apart))
 }
 
 /// Whether a frame may show the outline elsewhere than it was expected: the sides of a bar that has moved along itself may still lie on it, and its

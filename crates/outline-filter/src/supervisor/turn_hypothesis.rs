@@ -1,7 +1,8 @@
 //! One other way in which the object may have turned.
 use super::{
+    gates::{gate, largest_innovation},
     settings::FilterSettings,
-    tracking::{after_sudden_change, gate, largest_innovation},
+    tracking::after_sudden_change,
 };
 use crate::{
     measurement::{Frame, NegativeLogLikelihood},

@@ -3,7 +3,7 @@ use std::f64::consts::PI;
 
 use freeform_curve_fit::Outline;
 
-use super::{motion_filter::MotionFilter, tracking::Turns};
+use super::{gates::Turns, motion_filter::MotionFilter};
 use crate::{
     search::{TurnCentre, symmetry_order},
     tuning::{registration::LARGEST_NEAR_SYMMETRY, symmetry as tuning},

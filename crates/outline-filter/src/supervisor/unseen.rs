@@ -2,10 +2,14 @@
 use freeform_curve_fit::Outline;
 
 use super::{
+    gates::gate,
     motion_filter::{MotionFilter, Phase},
     tracking::predict,
 };
-use crate::{track::Outcome, tuning::supervisor::UNSEEN_STEPS};
+use crate::{
+    track::{Outcome, Track},
+    tuning::supervisor::UNSEEN_STEPS,
+};
 
 impl MotionFilter {
     /// Takes an object to be lost that has gone unseen for so long that nobody knows how far it has turned: linearisations would lead to any number of whole
@@ -28,18 +32,25 @@ impl MotionFilter {
         let before = (self.counts.rejected_in_a_row == 0 && self.has_gone_unseen(time)).then(|| self.clone());
         let outcome = self.follow(time, outline);
         let Some(mut lost) = before.filter(|_| !outcome.is_some_and(|outcome| outcome.is_accepted())) else {
-            return outcome;
+            return outcome.map(|outcome| self.look_elsewhere(outcome, time, outline));
         };
         lost.phase = Phase::Lost;
-        let found = lost.acquire(time, outline).filter(Outcome::is_accepted);
+        // One frame alone says that the motion has changed: it must show all of the object.
+        let found = lost.acquire(time, outline).filter(|found| found.is_accepted() && lost.shows_all(found));
         if found.is_some() {
-            lost.motion_changed = true;
+            lost.motion_changed |= lost.phase == Phase::Acquiring;
             *self = lost;
             return found;
         }
         self.search_memory.budget = lost.search_memory.budget;
         self.phase = Phase::Lost;
         outcome
+    }
+
+    /// Whether a frame shows all of the object that it is usual to show.
+    fn shows_all(&self, found: &Outcome) -> bool {
+        let of_all = |track: &Track| track.gate_of_all(gate(&self.settings, track)).smallest_agreement;
+        self.track.as_ref().is_some_and(|track| found.measurement.agreement >= of_all(track))
     }
 
     /// Whether the object that is tracked has not been seen for more than a few steps before a frame.

@@ -49,9 +49,9 @@ pub(crate) mod supervisor {
     pub(crate) const LARGEST_INNOVATION: f64 = 80.0;
     /// Deviation of the turn, rad, with which a lost object may be found where it was expected: two of it are a quarter of a circle.
     pub(crate) const LARGEST_TURN_DEVIATION: f64 = std::f64::consts::FRAC_PI_4;
-    /// Times the step before that a step must be longer than for an object to have gone unseen: half of the way to one missing frame, so that times
-    /// which are uneven by less are none.
-    pub(crate) const UNSEEN_STEPS: f64 = 1.5;
+    /// Times the step before that a step must be longer than for an object to have gone unseen: less than with one missing frame, and more than in films
+    /// of 24 pictures a second that are shown at 60, or of a camera that waits for light.
+    pub(crate) const UNSEEN_STEPS: f64 = 1.75;
     /// Steps over which a parameter must be known at least, however fast the motion changes.
     pub(crate) const STEPS_KNOWN: f64 = 10.0;
 }

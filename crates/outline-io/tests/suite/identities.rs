@@ -1,4 +1,6 @@
 //! Objects keep their names from picture to picture.
+use std::collections::BTreeMap;
+
 use crate::support::traced;
 use freeform_outline_io::{
     AmongAlike, GrayImage, PictureFrame, PictureOutlines, PictureSettings, Selection, TraceError, TraceSettings,
@@ -345,14 +347,49 @@ fn parts_of_a_belt_make_the_smallest_step_and_it_is_said_where_that_may_be_anoth
         let [right, wrong] = steps_of_names(&seen, taken);
         assert!(wrong == 0 && right >= 50, "{step}: {right} {wrong}");
         assert_eq!(!doubts.is_empty(), is_told, "{step}: {doubts:?}");
-        // No name is given to two parts that leave the picture one after the other.
-        let last = |name: u64| seen.iter().rposition(|objects| objects.iter().any(|object| object.0 == name));
-        let names = seen.iter().flatten().map(|object| object.0).max().expect("objects");
-        for name in 0..=names {
-            let pictures = seen.iter().filter(|objects| objects.iter().any(|object| object.0 == name)).count();
-            let first =
-                seen.iter().position(|objects| objects.iter().any(|object| object.0 == name)).expect("a picture");
-            assert_eq!(last(name), Some(first + pictures - 1), "{step}: {name}");
+        // Every name is that of one part, cut by the border or not: which one its place says, up to what is cut of it.
+        let mut parts: BTreeMap<u64, i64> = BTreeMap::new();
+        for (frame, objects) in seen.iter().enumerate() {
+            for (name, x, _) in objects {
+                let part = ((x - 13.0 - taken * frame as f64) / 100.0).round() as i64;
+                assert_eq!(*parts.entry(*name).or_insert(part), part, "{step}: {name} in {frame}");
+            }
         }
     }
+}
+
+#[test]
+fn parts_that_go_their_own_way_beside_a_row_keep_their_names() {
+    let part = |x: f64, y: f64, (cx, cy): (f64, f64)| (x - cx).abs() < 20.0 && (y - cy).abs() < 12.0;
+    let picture = |frame: f64| {
+        let row = [40.0, 140.0, 240.0, 340.0].map(|x| (x + 60.0 * frame, 30.0));
+        let loose = [(100.0 + 12.0 * frame, 90.0), (200.0 - 12.0 * frame, 90.0)];
+        let places: Vec<_> = row.into_iter().chain(loose).collect();
+        GrayImage::from_fn(500, 120, |x, y| {
+            let inside = |place: &(f64, f64)| part(f64::from(x), f64::from(y), *place);
+            Luma([if places.iter().any(inside) { 220 } else { 10 }])
+        })
+    };
+    let settings = PictureSettings { selection: Selection::All, ..PictureSettings::default() };
+    let seen = traced(vec![picture(0.0), picture(1.0)], settings);
+    let [first, second] = [0, 1].map(|k| seen[k].objects.as_ref().expect("objects"));
+    for (name, object) in first {
+        let moved = &second.iter().find(|other| other.0 == *name).expect("its name").1.centre - object.centre;
+        // y points up: the row is above.
+        let expected = match object.centre {
+            place if place.y > 60.0 => 60.0,
+            place if place.x < 150.0 => 12.0,
+            _ => -12.0,
+        };
+        assert!((moved.x - expected).abs() < 1.0, "{name} at {}: {}", object.centre, moved.x);
+    }
+}
+
+/// A belt that comes into an empty picture shows one part alone that is new at a time.
+#[test]
+fn a_part_that_comes_in_first_is_not_taken_for_the_one_after_it() {
+    let belt: Vec<f64> = (0..20).map(|i| -40.0 - 100.0 * f64::from(i)).collect();
+    let (seen, _) = row_of_parts(&belt, 55.0, 12);
+    let [right, wrong] = steps_of_names(&seen, 55.0);
+    assert!(wrong == 0 && right > 20, "{right} {wrong}: {seen:?}");
 }

@@ -154,7 +154,7 @@ fn a_dark_object_is_traced_also_where_something_lighter_than_the_ground_comes_in
             let is_dark = (40.0..80.0).contains(&x) && (50.0..90.0).contains(&y);
             let is_light = x > 199.0 - reach && (60.0..110.0).contains(&y);
             // A ground that is lighter to one side.
-            let ground = 90.0 + 0.05 * x + 3.0 * ((7 * column + 5 * row) % 11) as f64 / 11.0;
+            let ground = 90.0 + 0.05 * x + 3.0 * f64::from((7 * column + 5 * row) % 11) / 11.0;
             Luma([if is_dark {
                 30.0
             } else if is_light {
