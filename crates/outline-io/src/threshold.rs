@@ -18,8 +18,9 @@ const LEAST_RARE: f64 = 16.0;
 const RAREST: u64 = 16;
 const RARE_SHARE: u64 = 20;
 
-/// One in so many, where what is around them is known to be ground.
+/// At most one in so many, where what is around them is known to be ground, and at least one in so many: a large object may be around a highlight.
 const SHARE_ON_GROUND: u64 = 4;
+const FEWEST_ON_GROUND: u64 = 400;
 
 /// Side of the square of pixels by which a corner of a picture is judged.
 const CORNER: u32 = 8;
@@ -29,7 +30,8 @@ const CORNER: u32 = 8;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Threshold {
     /// Half-way between the median grey values of the two classes that Otsu's method finds; for a mask, half-way between
-    /// its two values.
+    /// its two values. Where the class of the objects is the ground, with three corners of the picture and more than half of it, or neither stands out
+    /// from the other, half-way to what lies far beyond the noise of the ground, if that has a few pixels in a hundred.
     #[default]
     Automatic,
     /// A grey value of the picture, above 0 and up to 255.
@@ -76,11 +78,13 @@ impl Levels {
                     let clear = stands_out(&counts[..split], ground.unwrap_or(0.0), object);
                     if let Err(error) = clear {
                         // The classes of Otsu's method are those of the ground where objects have too few pixels to make one.
-                        return Self::of_rare(&counts, RARE_SHARE).ok_or(error);
+                        return Self::of_rare(&counts, [RAREST, RARE_SHARE]).ok_or(error);
                     }
                     // So they are where something on the other side of the ground comes into the picture, such as a light hand beside a dark object.
-                    let is_ground = || is_around(picture, contrast, split);
-                    if let Some(rare) = is_ground().then(|| Self::of_rare(&counts, SHARE_ON_GROUND)).flatten() {
+                    let is_ground = is_around(picture, contrast, split);
+                    let fewest = picture.as_raw().len() as u64 / FEWEST_ON_GROUND;
+                    let limits = [fewest.max(RAREST), SHARE_ON_GROUND];
+                    if let Some(rare) = is_ground.then(|| Self::of_rare(&counts, limits)).flatten() {
                         return Ok(rare);
                     }
                 }
@@ -108,13 +112,13 @@ fn histogram(picture: &GrayImage, contrast: Contrast) -> [u64; 256] {
 }
 
 impl Levels {
-    /// Levels of objects that have few pixels, one in `share` at most, far beyond the noise of the ground; `None` where nothing is there.
-    fn of_rare(counts: &[u64; 256], share: u64) -> Option<Self> {
+    /// Levels of objects that have few pixels, at least `fewest` and one in `share` at most, far beyond the noise of the ground; `None` where nothing is there.
+    fn of_rare(counts: &[u64; 256], [fewest, share]: [u64; 2]) -> Option<Self> {
         let ground = median(counts, 0)?;
         let least = (ground + (RARE_STANDS_OUT * spread(counts, ground)).max(LEAST_RARE)).ceil() as usize;
         let rare = counts.get(least..)?;
         let (few, all): (u64, u64) = (rare.iter().sum(), counts.iter().sum());
-        let object = median(rare, least).filter(|_| RAREST <= few && share * few <= all)?;
+        let object = median(rare, least).filter(|_| fewest.min(all) <= few && share * few <= all)?;
         Some(Self { threshold: 0.5 * (ground + object), ground, object, two_valued: false })
     }
 }

@@ -1,6 +1,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use freeform_motion::VelocityUnit;
+use freeform_motion::curve_fit::Rectangle;
 use freeform_motion::outline_io::{
     Clipping, Identities, LabelMask, Selection, Smoothing, TraceError, TraceSettings, TracedLabel, TracedOutline,
 };
@@ -98,7 +99,8 @@ impl PyLabelTracer {
             return Err(PyValueError::new_err("the rows of the labels do not follow each other"));
         }
         let labels = labels.as_slice()?;
-        py.detach(|| self.objects(frame, LabelMask::new(labels, width, height)?)).map_err(value_error)
+        let size = (width as u32, height as u32);
+        py.detach(|| self.objects(frame, LabelMask::new(labels, width, height)?, size)).map_err(value_error)
     }
 }
 
@@ -108,7 +110,7 @@ impl PyLabelTracer {
         VelocityUnit::in_pictures(self.settings.pixel_size, self.settings.pixel_aspect, is_scaled)
     }
 
-    fn objects(&self, frame: u64, mask: LabelMask<'_>) -> Result<Traced, TraceError> {
+    fn objects(&self, frame: u64, mask: LabelMask<'_>, size: (u32, u32)) -> Result<Traced, TraceError> {
         let mut found = Vec::new();
         let mut refused = Vec::new();
         let mut in_parts = None;
@@ -132,7 +134,10 @@ impl PyLabelTracer {
         }
         Ok(match &self.naming {
             Naming::Labels => (with_outlines(found), refused, in_parts),
-            Naming::Places(identities) => (with_outlines(in_places(identities, frame, found)), Vec::new(), in_parts),
+            Naming::Places(identities) => {
+                let extent = self.settings.extent(size);
+                (with_outlines(in_places(identities, extent, frame, found)), Vec::new(), in_parts)
+            }
         })
     }
 }
@@ -140,6 +145,7 @@ impl PyLabelTracer {
 /// The objects by the names that they keep; none where nobody is where the object should be.
 fn in_places(
     identities: &Mutex<Identities>,
+    extent: Rectangle,
     frame: u64,
     mut found: Vec<(i64, TracedOutline)>,
 ) -> Vec<(i64, TracedOutline)> {
@@ -148,7 +154,9 @@ fn in_places(
     if traced.is_empty() {
         return Vec::new();
     }
-    let named = identities.lock().unwrap_or_else(PoisonError::into_inner).assign(frame, traced);
+    let mut identities = identities.lock().unwrap_or_else(PoisonError::into_inner);
+    identities.set_extent(extent);
+    let named = identities.assign(frame, traced);
     named.map_or_else(|_| Vec::new(), |named| named.into_iter().map(|(name, traced)| (name as i64, traced)).collect())
 }
 

@@ -1,6 +1,6 @@
 //! What may be wrong with how pictures are read and traced.
 use freeform_motion::outline_io::{AfterContact, AmongAlike, OriginWarning, OriginWarnings};
-
+use freeform_motion::significant;
 use nalgebra::Vector2;
 
 use super::{ASSUMED_RATE, PictureInput, ShapeInPicture};
@@ -68,12 +68,14 @@ impl PictureInput {
     /// That objects alike may have made another step, with the code.
     fn warning_of_step(&self) -> Option<(OriginWarning, String)> {
         let AmongAlike { frame, step, other } = *self.traced.among_alike().first()?;
-        // None is none, and not less than none.
-        let text = |step: Vector2<f64>| format!("({}, {})", step.x.round() + 0.0, step.y.round() + 0.0);
+        // Adding 0 to -0 makes 0.
+        let digits = |length: f64| significant((1e6 * length).round() / 1e6 + 0.0, 3);
+        let text = |step: Vector2<f64>| format!("({}, {})", digits(step.x), digits(step.y));
         let message = format!(
-            "objects that look alike moved by {} up to frame {frame}, or by {} as if each were a neighbour: their velocities may be others, as those of \
-             all that follow them; more frames a second tell, or something by which they differ",
+            "objects that look alike moved by {} from frame {} to {frame}, or by {} as if each were a neighbour: their velocities may be others, as \
+             those of all that follow them; more frames a second tell, or something by which they differ",
             text(step),
+            frame.saturating_sub(1),
             text(other)
         );
         Some((OriginWarning::AmongAlike, message))

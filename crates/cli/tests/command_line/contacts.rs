@@ -94,3 +94,30 @@ fn an_object_that_is_not_found_by_its_edges_while_it_touches_another_is_told_whe
     let pair = "freeform: warning[new_after_contact]: object 2, new in frame 22, may be object 0: ";
     assert!(told.contains(pair), "{told}");
 }
+
+/// Pictures of a belt of parts 60 pixels apart, of which each is 24 wide, that moves by so many pixels a frame; the folder.
+fn belt(base: &Path, step: u32) -> String {
+    pictures(&base.join(format!("belt{step}")), 12, [280, 60], |frame, column, row| {
+        let along = (column + 600 - step * frame) % 60;
+        let inside = along < 24 && (20..36).contains(&row) && (along > 8 || row > 26);
+        if inside { 210 } else { 30 }
+    })
+}
+
+#[test]
+fn parts_on_a_belt_that_may_have_gone_the_other_way_are_told_in_pictures_and_tables_of_them() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let table = folder.path().join("o.csv");
+    let told_of = |step: u32| {
+        let options = "--light --objects all --fps 25 --pixel-size 0.01";
+        let pictures = belt(folder.path(), step);
+        let told = stderr(&run(&format!("outline {pictures} {options} --output {}", table.display()), ""));
+        [told, stderr(&run(&format!("identify {}", table.display()), ""))]
+    };
+    let [of_pictures, of_table] = told_of(26);
+    let message = "warning[among_alike]: objects that look alike moved by (0.260, 0) from frame 0 to 1, or by (-0.340, 0) as if each were";
+    assert!(of_pictures.contains(message), "{of_pictures}");
+    assert!(of_table.contains("warning[among_alike]: "), "{of_table}");
+    let slow = told_of(12);
+    assert!(!slow.iter().any(|told| told.contains("among_alike")), "{slow:?}");
+}

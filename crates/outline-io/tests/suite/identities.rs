@@ -374,7 +374,7 @@ fn parts_that_go_their_own_way_beside_a_row_keep_their_names() {
     let seen = traced(vec![picture(0.0), picture(1.0)], settings);
     let [first, second] = [0, 1].map(|k| seen[k].objects.as_ref().expect("objects"));
     for (name, object) in first {
-        let moved = &second.iter().find(|other| other.0 == *name).expect("its name").1.centre - object.centre;
+        let moved = second.iter().find(|other| other.0 == *name).expect("its name").1.centre - object.centre;
         // y points up: the row is above.
         let expected = match object.centre {
             place if place.y > 60.0 => 60.0,

@@ -145,29 +145,54 @@ fn dark_objects_on_light_ground_are_traced_on_request() {
     assert_eq!(trace_mask(&dark, &settings).expect("a disc").outline, trace(&light).outline);
 }
 
-/// The threshold fell between the light thing and the ground, so that the ground was the dark object and the outline that of the light thing.
+/// A square of so many pixels across on a ground that is lighter to one side, darker than it by 60, with something lighter by 120 that comes in from the
+/// right; or all the other way round.
+fn square_and_intruder(side: f64, reach: f64, contrast: Contrast) -> GrayImage {
+    GrayImage::from_fn(200, 150, |column, row| {
+        let (x, y) = (f64::from(column), f64::from(row));
+        let in_square = (x - 60.0).abs() < 0.5 * side && (y - 75.0).abs() < 0.5 * side;
+        let is_intruder = x > 199.0 - reach && (60.0..110.0).contains(&y);
+        let ground = 90.0 + 0.05 * x + 3.0 * f64::from((7 * column + 5 * row) % 11) / 11.0;
+        let dark = if in_square {
+            30.0
+        } else if is_intruder {
+            210.0
+        } else {
+            ground
+        };
+        Luma([if contrast == Contrast::DarkOnLight { dark } else { 255.0 - dark } as u8])
+    })
+}
+
+/// The threshold fell between the intruder and the ground, so that the ground was the object and its outline that of the intruder.
 #[test]
-fn a_dark_object_is_traced_also_where_something_lighter_than_the_ground_comes_in() {
-    for reach in [0.0, 20.0, 60.0] {
-        let picture = GrayImage::from_fn(200, 150, |column, row| {
-            let (x, y) = (f64::from(column), f64::from(row));
-            let is_dark = (40.0..80.0).contains(&x) && (50.0..90.0).contains(&y);
-            let is_light = x > 199.0 - reach && (60.0..110.0).contains(&y);
-            // A ground that is lighter to one side.
-            let ground = 90.0 + 0.05 * x + 3.0 * f64::from((7 * column + 5 * row) % 11) / 11.0;
-            Luma([if is_dark {
-                30.0
-            } else if is_light {
-                210.0
-            } else {
-                ground
-            } as u8])
-        });
-        let settings = TraceSettings { contrast: Contrast::DarkOnLight, ..TraceSettings::default() };
-        let traced = trace_mask(&picture, &settings).expect("a square");
-        assert!((traced.area / 1600.0 - 1.0).abs() < 0.05, "{reach}: {}", traced.area);
-        assert!(!traced.touches_border, "{reach}");
+fn an_object_is_traced_also_where_something_on_the_other_side_of_the_ground_comes_in() {
+    for contrast in [Contrast::DarkOnLight, Contrast::LightOnDark] {
+        for reach in [20.0, 60.0] {
+            let settings = TraceSettings { contrast, ..TraceSettings::default() };
+            let traced = trace_mask(&square_and_intruder(40.0, reach, contrast), &settings).expect("a square");
+            assert!((traced.area / 1600.0 - 1.0).abs() < 0.05, "{reach}: {}", traced.area);
+            assert!(!traced.touches_border, "{reach}");
+        }
     }
+}
+
+#[test]
+fn a_highlight_does_not_take_the_place_of_a_large_object() {
+    // It has three corners of the picture.
+    let picture = GrayImage::from_fn(200, 150, |column, row| {
+        let is_glare = (100..107).contains(&column) && (70..77).contains(&row);
+        let is_ground = column > 120 && row > 60;
+        Luma([if is_glare {
+            250
+        } else if is_ground {
+            30
+        } else {
+            150 + (column * 7 + row * 5) as u8 % 3
+        }])
+    });
+    let traced = trace_mask(&picture, &TraceSettings::default()).expect("the object");
+    assert!(traced.area > 15_000.0, "{}", traced.area);
 }
 
 #[test]
