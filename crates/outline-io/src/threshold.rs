@@ -78,13 +78,15 @@ impl Levels {
                     let clear = stands_out(&counts[..split], ground.unwrap_or(0.0), object);
                     if let Err(error) = clear {
                         // The classes of Otsu's method are those of the ground where objects have too few pixels to make one.
-                        return Self::of_rare(&counts, [RAREST, RARE_SHARE]).ok_or(error);
+                        return Self::of_rare(&counts, RARE_SHARE).ok_or(error);
                     }
                     // So they are where something on the other side of the ground comes into the picture, such as a light hand beside a dark object.
-                    let is_ground = is_around(picture, contrast, split);
-                    let fewest = picture.as_raw().len() as u64 / FEWEST_ON_GROUND;
-                    let limits = [fewest.max(RAREST), SHARE_ON_GROUND];
-                    if let Some(rare) = is_ground.then(|| Self::of_rare(&counts, limits)).flatten() {
+                    let rare = is_around(picture, contrast, split).then(|| Self::of_rare(&counts, SHARE_ON_GROUND));
+                    let is_no_speck = |rare: &Self| {
+                        let beyond: u64 = counts[rare.threshold.ceil() as usize..].iter().sum();
+                        FEWEST_ON_GROUND * beyond >= picture.as_raw().len() as u64
+                    };
+                    if let Some(rare) = rare.flatten().filter(is_no_speck) {
                         return Ok(rare);
                     }
                 }
@@ -112,13 +114,13 @@ fn histogram(picture: &GrayImage, contrast: Contrast) -> [u64; 256] {
 }
 
 impl Levels {
-    /// Levels of objects that have few pixels, at least `fewest` and one in `share` at most, far beyond the noise of the ground; `None` where nothing is there.
-    fn of_rare(counts: &[u64; 256], [fewest, share]: [u64; 2]) -> Option<Self> {
+    /// Levels of objects that have few pixels, one in `share` at most, far beyond the noise of the ground; `None` where nothing is there.
+    fn of_rare(counts: &[u64; 256], share: u64) -> Option<Self> {
         let ground = median(counts, 0)?;
         let least = (ground + (RARE_STANDS_OUT * spread(counts, ground)).max(LEAST_RARE)).ceil() as usize;
         let rare = counts.get(least..)?;
         let (few, all): (u64, u64) = (rare.iter().sum(), counts.iter().sum());
-        let object = median(rare, least).filter(|_| fewest.min(all) <= few && share * few <= all)?;
+        let object = median(rare, least).filter(|_| RAREST <= few && share * few <= all)?;
         Some(Self { threshold: 0.5 * (ground + object), ground, object, two_valued: false })
     }
 }

@@ -68,9 +68,11 @@ impl PictureInput {
     /// That objects alike may have made another step, with the code.
     fn warning_of_step(&self) -> Option<(OriginWarning, String)> {
         let AmongAlike { frame, step, other } = *self.traced.among_alike().first()?;
-        // Adding 0 to -0 makes 0.
-        let digits = |length: f64| significant((1e6 * length).round() / 1e6 + 0.0, 3);
-        let text = |step: Vector2<f64>| format!("({}, {})", digits(step.x), digits(step.y));
+        let text = |step: Vector2<f64>| {
+            // No digits of one coordinate that are lost in the other.
+            let digits = |length: f64| significant(if length.abs() < 0.005 * step.norm() { 0.0 } else { length }, 3);
+            format!("({}, {})", digits(step.x), digits(step.y))
+        };
         let message = format!(
             "objects that look alike moved by {} from frame {} to {frame}, or by {} as if each were a neighbour: their velocities may be others, as \
              those of all that follow them; more frames a second tell, or something by which they differ",

@@ -26,7 +26,7 @@ fn points(frame: &Value) -> usize {
 #[test]
 fn a_player_has_every_frame_with_its_points_what_was_known_of_the_outline_and_why_a_frame_was_not_used() {
     let mut csv = sequence("");
-    csv.push_str("99,2,5,5\n99,2,6,5\n99,2,5.5,6\n99,2,5.2,5.5\n");
+    csv.push_str("15,0.5,5,5\n15,0.5,6,5\n15,0.5,5.5,6\n15,0.5,5.2,5.5\n");
     let page = report(&csv, "");
     let players = played(&page);
     assert_eq!(players.len(), 1);
