@@ -110,12 +110,13 @@ impl TwoPictures {
         better.min_by(|a, b| key(a).partial_cmp(&key(b)).expect("lengths are finite"))
     }
 
-    /// What most of the pairs of an assignment have in common, two at least.
+    /// The step that half of the pairs of an assignment or more have in common, two at least: fewer of a crowd may make one by chance.
     pub(crate) fn shared(&self, taken: &Assignment) -> Option<Assignment> {
         let led =
             |step: &Assignment| taken.pairs.iter().copied().filter(|pair| self.is_led(*pair, step.step)).collect();
         let groups = self.steps.iter().map(led).filter(|pairs: &Vec<_>| pairs.len() > 1);
-        groups.max_by_key(Vec::len).map(|pairs| self.together(pairs, &taken.pairs))
+        let most = groups.max_by_key(Vec::len).filter(|pairs| 2 * pairs.len() >= taken.pairs.len());
+        most.map(|pairs| self.together(pairs, &taken.pairs))
     }
 
     /// Another step that explains as much as one that several have made together, and is not far larger. The others of those taken stay as they are.
