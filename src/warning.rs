@@ -394,7 +394,7 @@ fn write_wrong_family(f: &mut fmt::Formatter<'_>, family: WrongFamily, motion: M
             write!(
                 f,
                 "the outlines change their shape in ways that no {motion} motion does: the object may bend, the camera look at it \
-                 from aside (--rectify{wider}), its lens distort it, or light and shadow move the edges"
+                 from aside (--rectify{wider}), its lens distort it, or light, shadow or motion blur move the edges"
             )
         }
     }

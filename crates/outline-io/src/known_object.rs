@@ -35,6 +35,10 @@ const LARGEST_GROWTH_OF_ONE: f64 = 1.25;
 /// less: by up to 0.08 for a robot of 16,000 pixels, by up to 0.21 for a thin bolt of 4,500 with a blurred edge.
 const OTHER_SHAPE: f64 = 0.5;
 
+/// The same up to which things that make one step together may be alike: of two small ones the edges of one may not be found, so that it is fatter and
+/// rounder.
+const MAY_BE_ALIKE: f64 = 1.0;
+
 /// The cost of a sighting at the farthest place, of the largest growth and of another shape.
 pub(crate) const LARGEST_COST: f64 = 3.0;
 
@@ -165,7 +169,7 @@ impl Known {
         let difference = self.difference(self.frame + 1, traced);
         difference.distance <= FIRST_REACH
             && difference.growth.is_some_and(|growth| growth.abs() <= FIRST_GROWTH.ln())
-            && difference.shape.is_none_or(|shape| shape <= OTHER_SHAPE)
+            && difference.shape.is_none_or(|shape| shape <= MAY_BE_ALIKE)
     }
 
     pub(crate) fn cost(&self, frame: u64, traced: &TracedOutline) -> Option<f64> {

@@ -103,7 +103,7 @@ impl fmt::Display for OriginWarning {
                 "an object may be one that was forgotten while it touched something: results of two objects may be those of one"
             }
             Self::AmongAlike => {
-                "objects that look alike may each have been taken for a neighbour: their velocities may be others"
+                "objects that look alike may each have been taken for a neighbour: their velocities may be wrong"
             }
         })
     }

@@ -74,8 +74,8 @@ impl PictureInput {
             format!("({}, {})", digits(step.x), digits(step.y))
         };
         let message = format!(
-            "objects that look alike moved by {} from frame {} to {frame}, or by {} as if each were a neighbour: their velocities may be others, as \
-             those of all that follow them; more frames a second tell, or something by which they differ",
+            "objects that look alike were taken to move by {} from frame {} to {frame}, but may have moved by {}, each to the place of a neighbour: their \
+             velocities may be wrong, and those of objects that come later; more frames a second tell, or something by which they differ",
             text(step),
             frame.saturating_sub(1),
             text(other)

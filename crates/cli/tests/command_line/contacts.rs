@@ -115,7 +115,7 @@ fn parts_on_a_belt_that_may_have_gone_the_other_way_are_told_in_pictures_and_tab
         [told, stderr(&run(&format!("identify {}", table.display()), ""))]
     };
     let [of_pictures, of_table] = told_of(26);
-    let message = "warning[among_alike]: objects that look alike moved by (0.260, 0) from frame 0 to 1, or by (-0.340, 0) as if each were";
+    let message = "warning[among_alike]: objects that look alike were taken to move by (0.260, 0) from frame 0 to 1, but may have moved by (-0.340, 0), each";
     assert!(of_pictures.contains(message), "{of_pictures}");
     assert!(of_table.contains("warning[among_alike]: "), "{of_table}");
     let slow = told_of(12);

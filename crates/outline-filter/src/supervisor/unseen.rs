@@ -53,7 +53,7 @@ impl MotionFilter {
         self.track.as_ref().is_some_and(|track| found.measurement.agreement >= of_all(track))
     }
 
-    /// Whether the object that is tracked has not been seen for more than a few steps before a frame.
+    /// Whether the step to a frame of the object that is tracked is much longer than the one before, as where frames are missing.
     fn has_gone_unseen(&self, time: f64) -> bool {
         let seconds = time - self.clock.of_track;
         self.phase == Phase::Tracking
