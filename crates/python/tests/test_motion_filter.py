@@ -75,7 +75,7 @@ def test_points_may_be_of_any_numeric_type(bird, dtype):
 
 def test_a_frame_of_another_object_is_rejected_with_the_reason(bird):
     motion_filter = followed(bird)
-    step = motion_filter.step(1.1, ff.simulate("square", seconds=0.1)[0].outline)
+    step = motion_filter.step(1.0, ff.simulate("square", seconds=0.1)[0].outline)
     assert not step and step.phase == "tracking" and step.agreement < 0.7
     assert "does not fit the object" in step.rejection
     assert motion_filter.frames_rejected == 1 and motion_filter.frames_accepted == 30
