@@ -16,8 +16,8 @@ const FROM_BORDER: f64 = 0.65;
 /// Fewer things than these make no step together where there are others: two of several do so by chance.
 const FEWEST: usize = 3;
 
-/// Things that may be missing in one of two pictures where another step is as good. A row with its ends in the picture that is taken for its neighbours leaves two
-/// over, one at either end.
+/// Things that may be missing in one of two pictures where another step is as good. A row with its ends in the picture that is taken for its neighbours
+/// leaves two over, one at either end.
 const ONE_MISSED: usize = 1;
 
 /// Steps that are looked at: the most frequent ones.
@@ -108,7 +108,7 @@ impl TwoPictures {
             let left = |pair: &(usize, usize)| !step.pairs.iter().any(|of| of.0 == pair.0 || of.1 == pair.1);
             let kept: Vec<_> = found.pairs.iter().copied().filter(left).collect();
             let all: Vec<_> = step.pairs.iter().copied().chain(kept).collect();
-            let unexplained = self.together(step.pairs.clone(), &all).unexplained;
+            let unexplained = self.unexplained_by(step.step, &all);
             let is_better = if is_alone {
                 unexplained == 0 && found.unexplained > 0
             } else {
@@ -142,7 +142,7 @@ impl TwoPictures {
             is_other
                 && explains
                 && other.step.norm() < TIMES_LARGER * shared.step.norm()
-                && self.together(pairs, &all).unexplained <= shared.unexplained + ONE_MISSED
+                && self.unexplained_by(self.mean_step(&pairs), &all) <= shared.unexplained + ONE_MISSED
         };
         let rivals = self.steps.iter().filter(|other| is_rival(other)).map(|other| other.step);
         rivals.min_by(|a, b| a.norm().total_cmp(&b.norm()))
@@ -151,8 +151,13 @@ impl TwoPictures {
     /// Pairs that make their step together, among all that are taken.
     fn together(&self, pairs: Vec<(usize, usize)>, all: &[(usize, usize)]) -> Assignment {
         let step = self.mean_step(&pairs);
-        let unexplained = self.unexplained(all, |_| step, |_| step);
+        let unexplained = self.unexplained_by(step, all);
         Assignment { step, pairs, unexplained }
+    }
+
+    /// Of what none of these pairs has, how many would be whole in the other picture if all made a step.
+    fn unexplained_by(&self, step: Vector2<f64>, pairs: &[(usize, usize)]) -> usize {
+        self.unexplained(pairs, |_| step, |_| step)
     }
 
     fn mean_step(&self, pairs: &[(usize, usize)]) -> Vector2<f64> {
@@ -198,8 +203,8 @@ impl TwoPictures {
             };
             if steps.len() < MOST_STEPS && steps.iter().all(is_new) {
                 let pairs = self.led_by(step);
-                let found = self.together(pairs.clone(), &pairs);
-                steps.extend((found.pairs.len() >= fewest).then_some(found));
+                let all = pairs.clone();
+                steps.extend((pairs.len() >= fewest).then(|| self.together(pairs, &all)));
             }
         }
         steps

@@ -190,7 +190,7 @@ impl Identities {
         let (mut are_all, mut common) = (true, None);
         while !before.is_empty() && now.len() > 1 {
             let spots = [
-                before.iter().map(|known| self.known[*known].spot).collect(),
+                before.iter().map(|known| self.known[*known].spot()).collect(),
                 now.iter().map(|seen| Spot::of(&traced[*seen])).collect(),
             ];
             let is_alike = |from: usize, to: usize| self.known[before[from]].may_be_alike(&traced[now[to]]);
@@ -255,10 +255,11 @@ impl Identities {
     fn led_by_neighbours(&self, frame: u64) -> Vec<Option<Known>> {
         let is_followed = |known: &&Known| known.velocity.is_some() && known.frame + 1 == frame;
         let led = |known: &Known| {
-            let is_new = known.velocity.is_none() && known.clipped;
+            if known.velocity.is_some() || !known.clipped {
+                return None;
+            }
             let far = |other: &&Known| (other.centre - known.centre).norm();
-            let followed = self.known.iter().filter(is_followed).filter(|_| is_new);
-            let nearest = followed.min_by(|a, b| far(a).total_cmp(&far(b)))?;
+            let nearest = self.known.iter().filter(is_followed).min_by(|a, b| far(a).total_cmp(&far(b)))?;
             nearest.velocity.map(|velocity| known.moving(velocity))
         };
         self.known.iter().map(led).collect()
@@ -287,7 +288,7 @@ impl Identities {
         let cost = |known: usize, seen: usize| {
             let (by_itself, led) = (&self.known[known], &led[known]);
             // What the border cuts and is not seen again at once has gone on with the others.
-            let has_left = led.is_some() && by_itself.clipped && by_itself.frame + 1 < frame;
+            let has_left = led.is_some() && by_itself.frame + 1 < frame;
             let ways = [led.as_ref(), (!has_left).then_some(by_itself)].into_iter().flatten();
             ways.filter_map(|known| known.cost(frame, &traced[seen])).min_by(f64::total_cmp)
         };

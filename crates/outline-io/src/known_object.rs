@@ -53,7 +53,8 @@ pub(crate) struct Known {
     speed: f64,
     /// The area seen.
     area: f64,
-    pub(crate) spot: Spot,
+    /// Width and height of the box around it.
+    size: Vector2<f64>,
     pub(crate) clipped: bool,
     /// As it was when it was last seen whole.
     shape: Option<AffineMomentInvariants>,
@@ -95,7 +96,7 @@ impl Difference {
 
     /// How ill a sighting fits, up to [`LARGEST_COST`]; `None` where it cannot be the object. Another shape alone may be a
     /// failure of the segmentation, so that it counts no more than the farthest place.
-    pub(crate) fn cost(&self) -> Option<f64> {
+    fn cost(&self) -> Option<f64> {
         let growth = self.growth.map_or(0.0, |growth| growth / LARGEST_GROWTH.ln());
         let shape = self.shape.map_or(0.0, |shape| (shape / OTHER_SHAPE).min(1.0));
         (self.is_near() && self.is_alike()).then_some(self.place.powi(2) + growth.powi(2) + shape.powi(2))
@@ -106,9 +107,9 @@ impl Known {
     pub(crate) fn seen(name: u64, frame: u64, traced: &TracedOutline) -> Self {
         let (centre, area, clipped) = (traced.centre, traced.area, traced.touches_border);
         let shape = if clipped { None } else { traced.invariants };
-        let spot = Spot::of(traced);
+        let Spot { size, .. } = Spot::of(traced);
         let (velocity, speed, has_left) = (None, 0.0, false);
-        Self { name, centre, velocity, speed, area, spot, clipped, shape, frame, first: centre, has_left }
+        Self { name, centre, velocity, speed, area, size, clipped, shape, frame, first: centre, has_left }
     }
 
     pub(crate) fn see(&mut self, frame: u64, traced: &TracedOutline) {
@@ -126,6 +127,11 @@ impl Known {
         let now = Self::seen(self.name, frame, traced);
         let (velocity, shape) = (Some(velocity), now.shape.or(self.shape));
         *self = Self { velocity, speed, shape, first: self.first, has_left, ..now };
+    }
+
+    /// Where it was last seen.
+    pub(crate) fn spot(&self) -> Spot {
+        Spot { centre: self.centre, size: self.size }
     }
 
     /// Where it should be.

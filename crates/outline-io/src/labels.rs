@@ -61,6 +61,13 @@ impl<'a> LabelMask<'a> {
         Ok(Self { labels, width, height })
     }
 
+    /// Columns and rows.
+    #[must_use]
+    pub fn dimensions(&self) -> (u32, u32) {
+        // As many as [`new`](Self::new) takes.
+        (self.width as u32, self.height as u32)
+    }
+
     /// Traces the outer outline of every label, in increasing order of the labels, to a fraction of a pixel; of a label in several parts,
     /// that of the largest. Outlines and settings are those of [`trace_mask`](crate::trace_mask) for a mask of two values; contrast,
     /// threshold and ring are not looked at. The smallest area is that of the largest part.

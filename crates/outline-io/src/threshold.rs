@@ -31,7 +31,7 @@ const CORNER: u32 = 8;
 pub enum Threshold {
     /// Half-way between the median grey values of the two classes that Otsu's method finds; for a mask, half-way between
     /// its two values. Where the class of the objects is the ground, with three corners of the picture and more than half of it, or neither stands out
-    /// from the other, half-way to what lies far beyond the noise of the ground, if that has a few pixels in a hundred.
+    /// from the other, half-way to what lies far beyond the noise of the ground, if that is neither a speck nor large.
     #[default]
     Automatic,
     /// A grey value of the picture, above 0 and up to 255.
@@ -81,12 +81,10 @@ impl Levels {
                         return Self::of_rare(&counts, RARE_SHARE).ok_or(error);
                     }
                     // So they are where something on the other side of the ground comes into the picture, such as a light hand beside a dark object.
-                    let rare = is_around(picture, contrast, split).then(|| Self::of_rare(&counts, SHARE_ON_GROUND));
-                    let is_no_speck = |rare: &Self| {
-                        let beyond: u64 = counts[rare.threshold.ceil() as usize..].iter().sum();
-                        FEWEST_ON_GROUND * beyond >= picture.as_raw().len() as u64
-                    };
-                    if let Some(rare) = rare.flatten().filter(is_no_speck) {
+                    let is_no_speck = |rare: &Self| FEWEST_ON_GROUND * rare.pixels(&counts) >= counts.iter().sum();
+                    if is_ground(picture, contrast, (&counts, split))
+                        && let Some(rare) = Self::of_rare(&counts, SHARE_ON_GROUND).filter(is_no_speck)
+                    {
                         return Ok(rare);
                     }
                 }
@@ -123,10 +121,18 @@ impl Levels {
         let object = median(rare, least).filter(|_| RAREST <= few && share * few <= all)?;
         Some(Self { threshold: 0.5 * (ground + object), ground, object, two_valued: false })
     }
+
+    /// How many pixels belong to objects.
+    fn pixels(&self, counts: &[u64; 256]) -> u64 {
+        counts[self.threshold.ceil() as usize..].iter().sum()
+    }
 }
 
-/// Whether a class of grey values is that of the ground: it has more than half of the picture and three of its corners or more.
-fn is_around(picture: &GrayImage, contrast: Contrast, split: usize) -> bool {
+/// Whether the class of the grey values from `split` on is that of the ground: it has more than half of the picture and three of its corners or more.
+fn is_ground(picture: &GrayImage, contrast: Contrast, (counts, split): (&[u64; 256], usize)) -> bool {
+    if 2 * counts[split..].iter().sum::<u64>() <= counts.iter().sum() {
+        return false;
+    }
     let is_of_class = |value: &u8| usize::from(signal(*value, contrast)) >= split;
     let (width, height) = picture.dimensions();
     let side = CORNER.min(width).min(height);
@@ -135,9 +141,7 @@ fn is_around(picture: &GrayImage, contrast: Contrast, split: usize) -> bool {
         let square = || (0..side * side).map(|k| picture.get_pixel(left + k % side, top + k / side).0[0]);
         2 * square().filter(is_of_class).count() > square().count()
     };
-    let pixels = picture.as_raw();
     corners.iter().filter(|corner| has_corner(corner)).count() >= 3
-        && 2 * pixels.iter().filter(|value| is_of_class(value)).count() > pixels.len()
 }
 
 /// Refuses classes that are no further apart than noise, or a ground that grows lighter to one side, is split into.

@@ -99,8 +99,7 @@ impl PyLabelTracer {
             return Err(PyValueError::new_err("the rows of the labels do not follow each other"));
         }
         let labels = labels.as_slice()?;
-        let size = (width as u32, height as u32);
-        py.detach(|| self.objects(frame, LabelMask::new(labels, width, height)?, size)).map_err(value_error)
+        py.detach(|| self.objects(frame, LabelMask::new(labels, width, height)?)).map_err(value_error)
     }
 }
 
@@ -110,7 +109,7 @@ impl PyLabelTracer {
         VelocityUnit::in_pictures(self.settings.pixel_size, self.settings.pixel_aspect, is_scaled)
     }
 
-    fn objects(&self, frame: u64, mask: LabelMask<'_>, size: (u32, u32)) -> Result<Traced, TraceError> {
+    fn objects(&self, frame: u64, mask: LabelMask<'_>) -> Result<Traced, TraceError> {
         let mut found = Vec::new();
         let mut refused = Vec::new();
         let mut in_parts = None;
@@ -135,7 +134,7 @@ impl PyLabelTracer {
         Ok(match &self.naming {
             Naming::Labels => (with_outlines(found), refused, in_parts),
             Naming::Places(identities) => {
-                let extent = self.settings.extent(size);
+                let extent = self.settings.extent(mask.dimensions());
                 (with_outlines(in_places(identities, extent, frame, found)), Vec::new(), in_parts)
             }
         })

@@ -23,6 +23,11 @@ pub(super) fn gate(settings: &FilterSettings, track: &Track) -> Gate {
     }
 }
 
+/// The same for a frame that is to show all of the object that frames usually show.
+pub(super) fn gate_of_all(settings: &FilterSettings, track: &Track) -> Gate {
+    track.gate_of_all(gate(settings, track))
+}
+
 /// Whether anything says that a motion goes on as it was.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Steadiness {

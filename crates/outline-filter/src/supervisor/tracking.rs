@@ -1,6 +1,6 @@
 //! A track moved on to a frame, and the changes of its motion found.
 use super::{
-    gates::{Gates, Steadiness, Turns, gate},
+    gates::{Gates, Steadiness, Turns, gate_of_all},
     motion_change::{Apart, MotionHistory, PoseVector, Shown},
     settings::FilterSettings,
 };
@@ -34,11 +34,11 @@ pub(super) fn advance(
     let gates = Gates::of_new_frame(settings, track, history.widening(track), (steady, turns));
     let (outcome, apart) =
         outcome_with_changes(settings, (track, frame), history, (seconds, &gates), (turns, comparison));
+    let since_taken = history.since_taken + seconds;
     let (outcome, apart) = match apart {
-        Some(apart) => found_elsewhere(outcome, settings, (track, frame), (apart, history.since_taken + seconds)),
+        Some(apart) => found_elsewhere(outcome, settings, (track, frame), (apart, since_taken)),
         None => (outcome, None),
     };
-    let since_taken = history.since_taken + seconds;
     let apart = apart.or_else(|| apart_by(settings, (track, frame), &outcome, since_taken));
     history.record(&outcome, seconds, apart);
     if outcome.is_accepted()
@@ -129,7 +129,7 @@ fn found_elsewhere(
     (error, since_taken): (PoseVector, f64),
 ) -> (Outcome, Option<Apart>) {
     let is_noisy = matches!(outcome.verdict, Err(Rejection::NoiseTooLarge { .. }));
-    let whole = track.gate_of_all(gate(settings, track));
+    let whole = gate_of_all(settings, track);
     // Points of an object that has been at rest scatter more once it moves. Where that is all that speaks against a frame, they must scatter less there.
     let whole = if is_noisy { whole } else { whole.without_noise() };
     let is_apart = whole.verdict(&outcome.measurement).is_err();
@@ -177,15 +177,12 @@ fn apart_by(
     since_taken: f64,
 ) -> Option<Apart> {
     let pose = outcome.pose.as_ref().filter(|_| !outcome.is_accepted())?;
-    let whole = track.gate_of_all(gate(settings, track));
+    let whole = gate_of_all(settings, track);
     let is_whole = outcome.measurement.agreement >= whole.smallest_agreement;
     let shown = if is_whole { Shown::Whole } else { Shown::InPart };
     let apart = Apart::measured(pose, shown, &track.null_directions())?;
-    let elsewhere = (!is_whole)
-        .then(|| whole_at((track, frame), (&apart.error, since_taken), &whole))
-        .flatten()
-        .map(|found| found.0);
-    Some(elsewhere.unwrap_or(apart))
+    let elsewhere = if is_whole { None } else { whole_at((track, frame), (&apart.error, since_taken), &whole) };
+    Some(elsewhere.map_or(apart, |(elsewhere, _)| elsewhere))
 }
 
 /// Whether a frame may show the outline elsewhere than it was expected: the sides of a bar that has moved along itself may still lie on it, and its

@@ -2,14 +2,11 @@
 use freeform_curve_fit::Outline;
 
 use super::{
-    gates::gate,
+    gates::gate_of_all,
     motion_filter::{MotionFilter, Phase},
     tracking::predict,
 };
-use crate::{
-    track::{Outcome, Track},
-    tuning::supervisor::UNSEEN_STEPS,
-};
+use crate::{track::Outcome, tuning::supervisor::UNSEEN_STEPS};
 
 impl MotionFilter {
     /// Takes an object to be lost that has gone unseen for so long that nobody knows how far it has turned: linearisations would lead to any number of whole
@@ -31,7 +28,7 @@ impl MotionFilter {
     pub(super) fn follow_or_lose(&mut self, time: f64, outline: &Outline) -> Option<Outcome> {
         let before = (self.counts.rejected_in_a_row == 0 && self.has_gone_unseen(time)).then(|| self.clone());
         let outcome = self.follow(time, outline);
-        let Some(mut lost) = before.filter(|_| !outcome.is_some_and(|outcome| outcome.is_accepted())) else {
+        let Some(mut lost) = before.filter(|_| !outcome.as_ref().is_some_and(Outcome::is_accepted)) else {
             return outcome.map(|outcome| self.look_elsewhere(outcome, time, outline));
         };
         lost.phase = Phase::Lost;
@@ -49,8 +46,8 @@ impl MotionFilter {
 
     /// Whether a frame shows all of the object that it is usual to show.
     fn shows_all(&self, found: &Outcome) -> bool {
-        let of_all = |track: &Track| track.gate_of_all(gate(&self.settings, track)).smallest_agreement;
-        self.track.as_ref().is_some_and(|track| found.measurement.agreement >= of_all(track))
+        let least = self.track.as_ref().map(|track| gate_of_all(&self.settings, track).smallest_agreement);
+        least.is_some_and(|least| found.measurement.agreement >= least)
     }
 
     /// Whether the step to a frame of the object that is tracked is much longer than the one before, as where frames are missing.

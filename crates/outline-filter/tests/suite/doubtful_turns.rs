@@ -10,16 +10,10 @@ use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, Normal};
 
-use crate::filter_support::{filter, frames_of, settings};
+use crate::filter_support::{filter, frames_of, omega_of, settings};
 
 const FRAME_RATE: f64 = 30.0;
 const NOISE: f64 = 0.003;
-
-/// The stated angular velocity with its deviation.
-fn omega_of(run: &MotionFilter) -> Option<(f64, f64)> {
-    let omega = run.estimate()?.parameters().next()?;
-    omega.value.zip(omega.standard_deviation)
-}
 
 /// Points, evenly spread with noise, on a square of side 1 with one corner cut off, turned and shifted.
 fn square_with_chamfer(turn: f64, centre: Vector2<f64>, random: &mut ChaCha8Rng) -> Vec<Point2<f64>> {

@@ -1,5 +1,5 @@
 //! Motions that change by much more, from frame to frame, than a pose is known to.
-use crate::filter_support::{bent_outline, filter, frames_of, settings};
+use crate::filter_support::{bent_outline, filter, frames_of, omega_of, settings};
 use freeform_curve_fit::Outline;
 use freeform_riccati::{AffineMotion, MotionModel, RigidMotion};
 use freeform_sim_camera::{BuiltInShape, Motion, Settings};
@@ -88,8 +88,7 @@ fn a_body_that_is_shaken_without_turning_has_an_angular_velocity_that_is_known_a
             frames_of(shape, Motion::varying(shaken), Settings { points: 200, noise: 0.0005, ..settings(60, seed) })
         {
             run.step(frame.time, &frame.outline).expect("increasing times");
-            let omega = run.estimate().filter(|_| frame.index >= 20).and_then(|estimate| estimate.parameters().next());
-            if let Some((value, std)) = omega.and_then(|omega| omega.value.zip(omega.standard_deviation)) {
+            if let Some((value, std)) = omega_of(&run).filter(|_| frame.index >= 20) {
                 off += u32::from(value.abs() > 4.0 * std);
                 deviations.push(std);
             }
@@ -126,8 +125,7 @@ fn after_blow(shape: BuiltInShape, seed: u64, blow: f64, (omega, velocity): (f64
             off = off.max((found.velocity - truth).component_div(&deviations).amax());
             deviation = if frame.index == 21 { deviations.amax() } else { deviation };
         }
-        let spin = run.estimate().and_then(|estimate| estimate.parameters().next());
-        if let Some((value, deviation)) = spin.and_then(|spin| spin.value.zip(spin.standard_deviation)) {
+        if let Some((value, deviation)) = omega_of(&run) {
             off = off.max((value - omega).abs() / deviation);
         }
     }
@@ -208,8 +206,7 @@ fn a_body_that_swings_is_within_its_deviations_in_the_first_frames_after_a_gap()
             let at_origin = bent_outline(angle(time), 0.002, &mut random, |_, _| 0.0);
             let outline = at_origin.mapped(|p| p + pose * Vector2::new(0.0, -5.0)).expect("an outline");
             run.step(time, &outline).expect("increasing times");
-            let spin = run.estimate().filter(|_| frame >= after).and_then(|estimate| estimate.parameters().next());
-            if let Some((value, deviation)) = spin.and_then(|spin| spin.value.zip(spin.standard_deviation)) {
+            if let Some((value, deviation)) = omega_of(&run).filter(|_| frame >= after) {
                 stated += 1;
                 // omega is positive clockwise.
                 let off = (value + rate(time)).abs() / deviation;
@@ -240,10 +237,8 @@ fn after_change(seed: u32, speed: f64, (change, missing): (f64, u32)) -> Vec<Opt
         if frame < first {
             continue;
         }
-        let omega = run.estimate().and_then(|estimate| estimate.parameters().next());
-        let known = omega.and_then(|omega| omega.value.zip(omega.standard_deviation));
         // omega is positive clockwise.
-        off.push(known.map(|(value, deviation)| (value + spin).abs() / deviation));
+        off.push(omega_of(&run).map(|(value, deviation)| (value + spin).abs() / deviation));
     }
     off
 }

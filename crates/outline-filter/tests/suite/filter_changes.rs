@@ -1,5 +1,5 @@
 //! The motion filter where the motion changes.
-use crate::filter_support::{filter, filtered, frames_of, settings};
+use crate::filter_support::{filter, filtered, frames_of, omega_of, settings};
 use freeform_estimate::ProcessNoise;
 use freeform_outline_filter::{FilterSettings, MotionFilter, Phase, Rejection};
 use freeform_riccati::{AffineMotion, MotionModel, RigidMotion};
@@ -55,10 +55,6 @@ fn a_last_frame_that_lies_only_in_part_where_it_was_expected_widens_what_is_stat
         let motion = Motion::piecewise(vec![(0.0, before), (38.0 / 30.0, after)]).expect("two phases");
         let frames = frames_of(shape, motion, Settings { noise: 0.002, ..settings(40, 3) });
         let mut run = filter(MotionModel::Rigid);
-        let omega_of = |run: &MotionFilter| {
-            let found = run.estimate()?.parameters().next()?;
-            found.value.zip(found.standard_deviation)
-        };
         let (last, others) = frames.split_last().expect("frames");
         others.iter().for_each(|frame| _ = run.step(frame.time, &frame.outline).expect("increasing times"));
         let (_, deviation) = omega_of(&run).expect("a motion that is known before");

@@ -1,5 +1,5 @@
 //! What is stated after few frames: of a motion that changes, and of one that does not.
-use crate::filter_support::{filter, frames_of, settings};
+use crate::filter_support::{filter, frames_of, omega_of, settings};
 use freeform_outline_filter::{Dynamics, FilterSettings, MotionFilter};
 use freeform_riccati::{MotionModel, RigidMotion};
 use freeform_sim_camera::{self as sim_camera, BuiltInShape, Motion, Settings, Trajectory};
@@ -15,8 +15,7 @@ fn errors_along(path: Trajectory, shape: BuiltInShape, settings: Settings) -> Ve
     let mut errors = Vec::new();
     for frame in &frames_of(shape, Motion::varying(move |t| path.motion(t)), settings) {
         run.step(frame.time, &frame.outline).expect("increasing times");
-        let omega = run.estimate().and_then(|estimate| estimate.parameters().next()).filter(|_| frame.index > 1);
-        let stated = omega.and_then(|omega| omega.value.zip(omega.standard_deviation));
+        let stated = omega_of(&run).filter(|_| frame.index > 1);
         errors.extend(stated.map(|(value, deviation)| (value - path.omega(frame.time)).abs() / deviation));
     }
     errors

@@ -8,7 +8,7 @@ use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, Normal};
 
-use crate::filter_support::filter;
+use crate::filter_support::{filter, omega_of};
 
 const FRAMES: u32 = 60;
 const FRAME_RATE: f64 = 30.0;
@@ -71,11 +71,7 @@ fn told(
         // Omega is clockwise.
         run.step(time, &shown((-omega * time, VELOCITY * time), random)).expect("increasing times");
     }
-    let known = run.estimate().and_then(|estimate| {
-        let omega = estimate.parameters().next()?;
-        omega.value.zip(omega.standard_deviation)
-    });
-    known.filter(|_| run.aliases().is_empty())
+    omega_of(&run).filter(|_| run.aliases().is_empty())
 }
 
 /// How many bodies tell their turn, within four deviations or not.

@@ -7,7 +7,7 @@ use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
-use crate::filter_support::filter;
+use crate::filter_support::{filter, omega_of};
 
 const NOISE: f64 = 0.004;
 const FRAMES: u32 = 40;
@@ -33,12 +33,6 @@ fn seen(
     (time, Outline::closed((0..12).map(&mut point).collect()).expect("an outline"))
 }
 
-/// The angular velocity that is stated at the end, with its deviation.
-fn omega_told(run: &MotionFilter) -> Option<(f64, f64)> {
-    let omega = run.estimate()?.parameters().next()?;
-    omega.value.zip(omega.standard_deviation)
-}
-
 /// A map of twelve chords is off by more than lobes of a tenth turn by: the turn of none of these was told.
 #[test]
 fn a_dozen_points_a_frame_tell_the_turn_once_several_frames_are_aligned_together() {
@@ -59,7 +53,7 @@ fn a_dozen_points_a_frame_tell_the_turn_once_several_frames_are_aligned_together
                 angles += 1;
             }
         }
-        let Some((value, deviation)) = omega_told(&run) else { continue };
+        let Some((value, deviation)) = omega_of(&run) else { continue };
         assert!((value - omega).abs() < 4.0 * deviation, "seed {seed}: {value} for {omega}, {deviation}");
         told += usize::from(deviation < 0.02);
     }
@@ -76,7 +70,7 @@ fn a_dozen_points_a_frame_of_a_circle_tell_no_turn() {
             let (time, outline) = seen(frame, (|_| 1.0, |time| 1.5 * time), &mut random);
             run.step(time, &outline).expect("an outline");
         }
-        assert_eq!(omega_told(&run), None, "{seed}");
+        assert_eq!(omega_of(&run), None, "{seed}");
     }
 }
 
@@ -92,8 +86,8 @@ fn a_dozen_points_a_frame_of_a_symmetric_body_state_no_turn_that_another_explain
                 let (time, outline) = seen(frame, (body, |time| omega * time), &mut random);
                 run.step(time, &outline).expect("an outline");
             }
-            let right = omega_told(&run).is_none_or(|(value, deviation)| (value - omega).abs() < 4.0 * deviation);
-            assert!(right || !run.aliases().is_empty(), "{lobes} lobes, {omega}: {:?}", omega_told(&run));
+            let right = omega_of(&run).is_none_or(|(value, deviation)| (value - omega).abs() < 4.0 * deviation);
+            assert!(right || !run.aliases().is_empty(), "{lobes} lobes, {omega}: {:?}", omega_of(&run));
         }
     }
 }
@@ -113,7 +107,7 @@ fn a_small_disc_of_pixels_that_turns_is_not_said_to_rest() {
                 .collect();
             run.step(f64::from(frame) / 30.0, &Outline::closed(points).expect("an outline")).expect("an outline");
         }
-        assert_eq!(omega_told(&run), None, "{radius} {speed}");
+        assert_eq!(omega_of(&run), None, "{radius} {speed}");
     }
 }
 
@@ -127,7 +121,7 @@ fn a_dozen_points_a_frame_of_a_body_whose_spin_changes_are_right_or_unstated() {
             for frame in 0..FRAMES {
                 let (time, outline) = seen(frame, (|angle| radius(0.1, angle), turn), &mut random);
                 run.step(time, &outline).expect("an outline");
-                let Some((value, deviation)) = omega_told(&run).filter(|_| frame >= 12) else { continue };
+                let Some((value, deviation)) = omega_of(&run).filter(|_| frame >= 12) else { continue };
                 let omega = (turn(time + 1e-4) - turn(time - 1e-4)) / 2e-4;
                 let off = (value - omega) / deviation;
                 assert!(off.abs() < 4.5, "{number}, seed {seed}, frame {frame}: {off}");
@@ -151,6 +145,6 @@ fn frames_that_wait_to_be_aligned_are_saved_with_the_state() {
             interrupted = MotionFilter::from_bytes(&interrupted.to_bytes().expect("memory")).expect("its own state");
         }
     }
-    assert!(omega_told(&whole).is_some());
-    assert_eq!(omega_told(&whole), omega_told(&interrupted));
+    assert!(omega_of(&whole).is_some());
+    assert_eq!(omega_of(&whole), omega_of(&interrupted));
 }

@@ -113,6 +113,7 @@ fn lies_on(sight: &Sight, other: &Sight) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::choice::sight::Inner;
 
     /// What is seen of a square of this half side.
     fn square(frame: u64, centre: [f64; 2], half: f64) -> Sight {
@@ -122,7 +123,7 @@ mod tests {
         let centre = Point2::from(centre);
         let points = (0..4).flat_map(|side| (0..steps).map(move |k| centre + Vector2::from(sides(k)[side]))).collect();
         let (area, contrast, objects) = (4.0 * half * half, 1.0, [1, 1]);
-        let (invariants, is_clipped, inner, second) = (None, false, crate::choice::sight::Inner::default(), 0.0);
+        let (invariants, is_clipped, inner, second) = (None, false, Inner::default(), 0.0);
         Sight { frame, centre, area, invariants, is_clipped, points, contrast, objects, inner, second }
     }
 

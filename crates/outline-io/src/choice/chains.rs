@@ -159,12 +159,12 @@ mod tests {
     use nalgebra::Point2;
 
     use super::*;
+    use crate::choice::sight::Inner;
 
     /// What is seen of something small.
     fn speck(frame: u64, [x, y]: [f64; 2]) -> Sight {
         let (centre, area, contrast, objects) = (Point2::new(x, y), 100.0, 1.0, [1, 1]);
-        let (invariants, is_clipped, points, inner, second) =
-            (None, false, vec![], crate::choice::sight::Inner::default(), 0.0);
+        let (invariants, is_clipped, points, inner, second) = (None, false, vec![], Inner::default(), 0.0);
         Sight { frame, centre, area, invariants, is_clipped, points, contrast, objects, inner, second }
     }
 

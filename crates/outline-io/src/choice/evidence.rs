@@ -1,5 +1,5 @@
 use super::rest::{movement, rests};
-use super::sight::Sight;
+use super::sight::{Inner, Sight};
 use super::trial::Trial;
 use super::{LINE, Tracing};
 use crate::edges::median;
@@ -122,9 +122,12 @@ pub(super) fn evidence_of(trial: &Trial, tracing: Tracing, sights: &[Sight]) -> 
 
 /// Whether nearly all show the same number of holes and marks, of the same area together.
 fn has_steady_contours(whole: &[&Sight]) -> bool {
-    let Some(count) = median(whole.iter().map(|sight| sight.inner.count as f64)) else { return false };
-    let Some(area) = median(whole.iter().map(|sight| sight.inner.share)) else { return false };
-    let Some(largest) = median(whole.iter().map(|sight| sight.inner.largest)) else { return false };
+    let of = |value: fn(&Inner) -> f64| median(whole.iter().map(|sight| value(&sight.inner)));
+    let (Some(count), Some(area), Some(largest)) =
+        (of(|inner| inner.count as f64), of(|inner| inner.share), of(|inner| inner.largest))
+    else {
+        return false;
+    };
     let is_same = |sight: &&&Sight| sight.inner.count as f64 == count && (sight.inner.share / area).ln().abs() < 0.1;
     whole.len() > 2 && count > 0.0 && largest < LINE && whole.iter().filter(is_same).count() * 10 >= whole.len() * 8
 }

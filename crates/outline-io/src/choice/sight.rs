@@ -68,9 +68,10 @@ impl Sight {
     ) -> Self {
         let boundary = chosen.outline.pieces().next().map_or(&[][..], |piece| piece.points);
         let points: Vec<Point2<f64>> = boundary.to_vec();
-        let inner = chosen.outline.pieces().skip(1).map(|piece| area_of(piece.points) / chosen.area);
-        let inner =
-            Inner { share: inner.clone().sum(), largest: inner.clone().fold(0.0, f64::max), count: inner.count() };
+        let shares: Vec<f64> =
+            chosen.outline.pieces().skip(1).map(|piece| area_of(piece.points) / chosen.area).collect();
+        let largest = shares.iter().copied().fold(0.0, f64::max);
+        let inner = Inner { share: shares.iter().sum(), largest, count: shares.len() };
         Self {
             frame,
             centre: chosen.centre,

@@ -89,13 +89,14 @@ mod tests {
     use nalgebra::Point2;
 
     use super::*;
+    use crate::choice::sight::Inner;
 
     /// What is seen of an outline that reaches so far from its middle in a direction.
     fn outline(reach: impl Fn(f64) -> f64) -> Sight {
         let centre = Point2::new(160.0, 120.0);
         let at = |k: usize| k as f64 / 700.0 * TAU;
         let points = (0..700).map(|k| centre + reach(at(k)) * Vector2::new(at(k).cos(), at(k).sin())).collect();
-        let (contrast, objects, inner) = (1.0, [1, 1], crate::choice::sight::Inner::default());
+        let (contrast, objects, inner) = (1.0, [1, 1], Inner::default());
         Sight {
             frame: 0,
             centre,

@@ -145,12 +145,12 @@ fn dark_objects_on_light_ground_are_traced_on_request() {
     assert_eq!(trace_mask(&dark, &settings).expect("a disc").outline, trace(&light).outline);
 }
 
-/// A square of so many pixels across on a ground that is lighter to one side, darker than it by 60, with something lighter by 120 that comes in from the
+/// A square of 40 pixels across on a ground that is lighter to one side, darker than it by 60, with something lighter by 120 that comes in from the
 /// right; or all the other way round.
-fn square_and_intruder(side: f64, reach: f64, contrast: Contrast) -> GrayImage {
+fn square_and_intruder(reach: f64, contrast: Contrast) -> GrayImage {
     GrayImage::from_fn(200, 150, |column, row| {
         let (x, y) = (f64::from(column), f64::from(row));
-        let in_square = (x - 60.0).abs() < 0.5 * side && (y - 75.0).abs() < 0.5 * side;
+        let in_square = (x - 60.0).abs() < 20.0 && (y - 75.0).abs() < 20.0;
         let is_intruder = x > 199.0 - reach && (60.0..110.0).contains(&y);
         let ground = 90.0 + 0.05 * x + 3.0 * f64::from((7 * column + 5 * row) % 11) / 11.0;
         let dark = if in_square {
@@ -170,7 +170,7 @@ fn an_object_is_traced_also_where_something_on_the_other_side_of_the_ground_come
     for contrast in [Contrast::DarkOnLight, Contrast::LightOnDark] {
         for reach in [20.0, 60.0] {
             let settings = TraceSettings { contrast, ..TraceSettings::default() };
-            let traced = trace_mask(&square_and_intruder(40.0, reach, contrast), &settings).expect("a square");
+            let traced = trace_mask(&square_and_intruder(reach, contrast), &settings).expect("a square");
             assert!((traced.area / 1600.0 - 1.0).abs() < 0.05, "{reach}: {}", traced.area);
             assert!(!traced.touches_border, "{reach}");
         }

@@ -43,6 +43,12 @@ pub(crate) fn stated(filter: &MotionFilter) -> String {
     format!("{motion:?} {doubts:?}")
 }
 
+/// The angular velocity that is stated, with its deviation.
+pub(crate) fn omega_of(filter: &MotionFilter) -> Option<(f64, f64)> {
+    let omega = filter.estimate()?.parameters().next()?;
+    omega.value.zip(omega.standard_deviation)
+}
+
 /// Points of a [`bent_outline`].
 pub(crate) const BENT_POINTS: u16 = 300;
 
