@@ -37,7 +37,7 @@ impl MotionFilter {
     /// found not to be of the object.
     #[must_use]
     pub fn segment(&self) -> usize {
-        self.counts.restarts + self.counts.begun_with_turn + self.counts.begun_without_edge
+        self.counts.restarts + self.counts.begun_with_more + self.counts.begun_without_edge
     }
 
     /// Looks at the outline of a frame at a time in seconds; whether it shows an edge that was not known.

@@ -245,7 +245,7 @@ impl MotionFilter {
         self.search_memory.landmarks = to_body.and_then(|to_body| Some(Landmarks::of(outline)?.moved(&to_body)));
         self.begin_window(self.clock.last_frame, outline, &new);
         self.replace(new, MotionHistory::default(), self.clock.of_track, Phase::Acquiring);
-        self.counts.begun_with_turn += 1;
+        self.counts.begun_with_more += 1;
     }
 }
 

@@ -198,6 +198,9 @@ impl MotionFilter {
         };
         self.search_memory.budget.add_frame(self.phase == Phase::Tracking);
         let mut rejection = outcome.map_or(Some(Rejection::NotFound), |outcome| outcome.verdict.err());
+        if rejection.is_some() && self.begin_with_more(time, outline) {
+            return (None, None);
+        }
         let is_found_elsewhere = rejection.is_none() && self.phase == Phase::Acquiring;
         if is_found_elsewhere && self.rests_on_two_parts() {
             self.begin_unrelated(time, outline);

@@ -116,7 +116,7 @@ impl MotionFilter {
         self.search_memory.begin(first);
         self.counts.begin_with(all.len());
         // Poses go back to the first of these frames again.
-        self.counts.begun_with_turn += usize::from(self.segment() != *segment);
+        self.counts.begun_with_more += usize::from(self.segment() != *segment);
         self.motion_changed = history.is_changing();
         let time = self.clock.last_frame;
         self.replace(track, history, time, Phase::Tracking);

@@ -1,5 +1,5 @@
 //! Maps begun from a frame, and begun again where that frame did not show the object.
-use freeform_curve_fit::Outline;
+use freeform_curve_fit::{Outline, Piece};
 
 use super::{
     counts::Counts,
@@ -63,6 +63,25 @@ impl MotionFilter {
         }
     }
 
+    /// Begins anew with a frame that shows far more of the object than the one frame before, where the part that this showed lies nowhere on it: what
+    /// comes in over the edge of the picture shows a corner first. Nothing rests on that but where it was. Whether it has begun.
+    pub(super) fn begin_with_more(&mut self, time: f64, outline: &Outline) -> bool {
+        let is_first = self.phase == Phase::Acquiring && self.counts.accepted_by_track == 1;
+        let is_of_part = self.track.as_ref().is_some_and(Track::was_begun_with_part);
+        let shows_more =
+            self.window.first().is_some_and(|first| length_of(outline) > tuning::FAR_MORE * length_of(first));
+        let is_begun = is_first
+            && self.counts.rejected_by_track == 0
+            && is_of_part
+            && shows_more
+            && self.start(time, outline).is_ok();
+        if is_begun {
+            self.counts.begun_with_more += 1;
+            self.counts.accepted_in_recording += 1;
+        }
+        is_begun
+    }
+
     /// After a rejected frame: look elsewhere, or begin again.
     pub(super) fn fall_back(&mut self, time: f64, outline: &Outline) {
         let Counts { rejected_in_a_row, accepted_by_track, rejected_by_track, .. } = self.counts;
@@ -101,6 +120,10 @@ impl MotionFilter {
         {
             return false;
         }
+        // One that begins anew with a frame is not of the same object either.
+        let takes = |begun: &mut Self, time: f64, outline: &Outline| {
+            begun.process(time, outline).1.is_none() && begun.counts.accepted_by_track > 1
+        };
         let mut do_others_agree = false;
         let unfound = self.search_memory.unfound.clone();
         for (number, (begun_at, first)) in unfound.iter().enumerate() {
@@ -110,15 +133,25 @@ impl MotionFilter {
             }
             for (time, outline) in &unfound[number + 1..] {
                 self.search_memory.budget.spend();
-                do_others_agree |= begun.process(*time, outline).1.is_none();
+                do_others_agree |= takes(&mut begun, *time, outline);
             }
             self.search_memory.budget.spend();
-            if begun.process(time, outline).1.is_none() {
+            if takes(&mut begun, time, outline) {
                 return false;
             }
         }
         do_others_agree
     }
+}
+
+/// Length of all that an outline shows.
+fn length_of(outline: &Outline) -> f64 {
+    let of_piece = |piece: Piece<'_>| {
+        let ends = piece.points.first().zip(piece.points.last()).filter(|_| piece.closed);
+        let sides = piece.points.windows(2).map(|side| (side[1] - side[0]).norm()).sum::<f64>();
+        sides + ends.map_or(0.0, |(first, last)| (first - last).norm())
+    };
+    outline.pieces().map(of_piece).sum()
 }
 
 #[cfg(feature = "serde")]

@@ -138,12 +138,12 @@ impl MotionFilter {
             accepted_by_track,
             rejected_by_track,
             restarts,
-            begun_with_turn,
+            begun_with_more,
             begun_without_edge,
             fruitless_starts,
         } = self.counts;
         let of_recording = [accepted_in_recording, rejected_in_recording, rejected_in_a_row, hidden_in_a_row];
-        let of_starts = [restarts, begun_with_turn, begun_without_edge, fruitless_starts];
+        let of_starts = [restarts, begun_with_more, begun_without_edge, fruitless_starts];
         of_recording.iter().chain(&of_starts).chain(&[accepted_by_track, rejected_by_track]).all(|count| *count < most)
     }
 }

@@ -1,5 +1,6 @@
-//! First frames that are wrong.
+//! First frames that are wrong, or show little.
 use crate::filter_support::{filtered, frames_of, settings};
+use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
 use freeform_outline_filter::{FilterSettings, MotionFilter, Phase, Unstated, estimate_batch};
 use freeform_riccati::{MotionModel, RigidMotion};
 use freeform_sim_camera::{BuiltInShape, Frame};
@@ -26,6 +27,37 @@ fn after_a_wrong_first_frame_another_wrong_one_begins_no_map_where_two_agree() {
         let omega = run.estimate().expect("an estimate").parameters().next().expect("omega comes first");
         let (value, std) = (omega.value.expect("stated"), omega.standard_deviation.expect("known"));
         assert!((value - MOTION.omega).abs() < 5.0 * std && std < 0.01, "seed {seed}: {value}, std {std}");
+    }
+}
+
+/// Frames of a bird, which goes far from one to the next, of the first of which this share of the contour is seen, from the middle of it on.
+fn seen_in_part_at_first(share: f64, seed: u64) -> Vec<Frame> {
+    let mut frames = frames_of(BuiltInShape::Bird, RigidMotion { omega: 0.5, b1: 20.0, b2: 6.0 }, settings(30, seed));
+    let points: Vec<_> = frames[0].outline.points().copied().collect();
+    let count = (share * points.len() as f64) as usize;
+    let seen = points.iter().cycle().skip(points.len() / 2).take(count).copied().collect();
+    let arc = OpenArc::new(seen).expect("an arc");
+    frames[0].outline = Outline::Open(OpenOutline::new(vec![arc]).expect("arcs"));
+    frames
+}
+
+#[test]
+fn a_frame_that_shows_the_whole_of_what_a_corner_was_seen_of_begins_the_map_anew_and_is_not_rejected() {
+    for seed in 0..4 {
+        let run = filtered(MotionModel::Rigid, &seen_in_part_at_first(0.04, seed));
+        assert_eq!((run.restarts(), run.frames_rejected(), run.frames_accepted()), (0, 0, 30), "seed {seed}");
+        assert_eq!(run.segment(), 1, "seed {seed}");
+        let omega = run.estimate().expect("an estimate").parameters().next().expect("omega comes first");
+        let (value, std) = (omega.value.expect("stated"), omega.standard_deviation.expect("known"));
+        assert!((value - 0.5).abs() < 5.0 * std && std < 0.02, "seed {seed}: {value}, std {std}");
+    }
+}
+
+#[test]
+fn most_of_the_object_is_found_on_the_whole_and_poses_go_back_to_it() {
+    for seed in 0..4 {
+        let run = filtered(MotionModel::Rigid, &seen_in_part_at_first(0.8, seed));
+        assert_eq!((run.segment(), run.frames_rejected()), (0, 0), "seed {seed}");
     }
 }
 
