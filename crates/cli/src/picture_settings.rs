@@ -54,6 +54,7 @@ pub(crate) fn picture_settings(
         threshold: options.threshold.map_or(Threshold::Automatic, Threshold::Level),
         smoothing: options.smoothing.map_or(Smoothing::Automatic, Smoothing::Gaussian),
         edges: Edges::Refined,
+        transfer: options.transfer().transfer(),
         minimum_area: options.min_area,
         contours: if options.traces_contours() { Contours::All } else { Contours::Boundary },
         clipping: Clipping::Open,

@@ -3,11 +3,11 @@ use std::path::{Path, PathBuf};
 
 use freeform_motion::outline_io::{
     Channel, Difference, Margins, OriginWarning, PicturePreview, PictureSettings, Selection, Smoothing, Tracing,
-    TracingChoice, TracingEvidence, TracingWarning, TracingWay,
+    TracingChoice, TracingEvidence, TracingWarning, TracingWay, Transfer,
 };
 use freeform_motion::short;
 
-use crate::args::{ChannelChoice, ContoursChoice, ObjectsChoice, PictureOptions, RingChoice};
+use crate::args::{ChannelChoice, ContoursChoice, ObjectsChoice, PictureOptions, RingChoice, TransferChoice};
 use crate::progress::{Progress, Verbosity};
 
 /// Area of another object over that of the one which is followed, from which on it is told that it is not: specks are smaller.
@@ -116,6 +116,10 @@ pub(crate) fn choose(
     }
     if given.channel.is_some() {
         parts.retain(|part| !part.starts_with("--channel"));
+    }
+    if choice.transfer == Transfer::Srgb && given.transfer.is_none() {
+        options.transfer = Some(TransferChoice::Srgb);
+        parts.push("--transfer srgb".to_owned());
     }
     let follows_one = objects.is_none() && given.objects.is_none();
     let left_out = Some(best.second).filter(|share| follows_one && *share >= WORTH_TELLING);

@@ -30,8 +30,7 @@ impl AffineMomentInvariants {
                 GAUSS.iter().for_each(|(place, weight)| f(p + (q - p) * *place, cross * weight));
             }
         };
-        let mut covariance = Matrix2::zeros();
-        integrals(&mut |r, weight| covariance += weight / 4.0 * r * r.transpose());
+        let covariance = SecondMoments::about(&area, points).0;
         let unit = covariance.cholesky()?.l().try_inverse()?;
         let zero = Complex::new(0.0, 0.0);
         let (mut c21, mut c30, mut c22, mut c31, mut c40) = (zero, zero, 0.0, zero, zero);
@@ -60,6 +59,37 @@ impl AffineMomentInvariants {
     #[must_use]
     pub fn distance(&self, other: &Self) -> f64 {
         self.0.iter().zip(&other.0).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+    }
+}
+
+/// Second moments of the area within a closed polygon about its centre, over the area.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SecondMoments(Matrix2<f64>);
+
+impl SecondMoments {
+    /// Of the polygon through the points, either way round.
+    pub(crate) fn of(points: &(impl Iterator<Item = Point2<f64>> + Clone)) -> Self {
+        Self::about(&AreaAndCentre::of(points), points)
+    }
+
+    fn about(area: &AreaAndCentre, points: &(impl Iterator<Item = Point2<f64>> + Clone)) -> Self {
+        let mut moments = Matrix2::zeros();
+        for (p, q) in edges(points) {
+            let (p, q) = (p - area.centre, q - area.centre);
+            let cross = p.perp(&q) / area.signed_area;
+            for (place, weight) in GAUSS {
+                let r = p + (q - p) * place;
+                moments += cross * weight / 4.0 * r * r.transpose();
+            }
+        }
+        Self(moments)
+    }
+
+    /// The largest and the smallest, of all directions.
+    pub(crate) fn principal(&self) -> [f64; 2] {
+        let (mean, half) = (0.5 * self.0.trace(), 0.5 * (self.0.m11 - self.0.m22));
+        let apart = half.hypot(self.0.m12);
+        [mean + apart, mean - apart]
     }
 }
 

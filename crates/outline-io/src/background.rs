@@ -52,6 +52,16 @@ pub fn median_picture(pictures: &[Arc<GrayImage>]) -> Option<Arc<GrayImage>> {
 }
 
 impl Difference {
+    /// How far a value differs from that of the ground.
+    #[inline]
+    pub(crate) fn of_values(self, value: f64, ground: f64) -> f64 {
+        match self {
+            Self::Either => (value - ground).abs(),
+            Self::Lighter => (value - ground).max(0.0),
+            Self::Darker => (ground - value).max(0.0),
+        }
+    }
+
     /// How far each pixel differs from the background; both of one size.
     pub(crate) fn of(self, picture: &GrayImage, background: &GrayImage) -> GrayImage {
         let mut difference = picture.clone();

@@ -36,6 +36,7 @@ mod choice;
 mod coco;
 mod column;
 mod common_step;
+mod compared;
 mod compressed_video;
 mod contacts;
 mod contrast;
@@ -122,6 +123,7 @@ mod trace;
 mod trace_settings;
 mod traced_pictures;
 mod trackmate;
+mod transfer;
 mod void_border;
 mod whole_pixels;
 mod write_error;
@@ -178,6 +180,7 @@ pub use threshold::Threshold;
 pub use trace::{TracedOutline, is_two_valued, trace_mask, trace_objects};
 pub use trace_settings::{Clipping, Contours, Edges, Smoothing, TraceSettings};
 pub use traced_pictures::{TracedPicture, TracedPictures, TracingSummary};
+pub use transfer::Transfer;
 pub use write_error::WriteError;
 
 #[cfg(doctest)]

@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use image::GrayImage;
 
 use crate::background::{Background, Difference, RunningMedian};
+use crate::compared::{Compared, Looked};
 use crate::contacts::AfterContact;
 use crate::contrast::Contrast;
 use crate::ground_surface::ground_surface;
@@ -99,14 +100,14 @@ pub struct PictureOutlines<S> {
 }
 
 /// What is traced in a picture.
-type Traced = Result<Vec<TracedOutline>, TraceError>;
+pub(crate) type Traced = Result<Vec<TracedOutline>, TraceError>;
 
 /// What is looked at.
 #[derive(Debug, Clone)]
-struct View {
-    picture: Arc<GrayImage>,
+pub(crate) struct View {
+    pub(crate) picture: Arc<GrayImage>,
     /// What it is compared with, if with anything but its own surface.
-    ground: Option<Arc<GrayImage>>,
+    pub(crate) ground: Option<Arc<GrayImage>>,
 }
 
 /// The tracing of a picture.
@@ -126,7 +127,7 @@ impl View {
         is_same_ground && Arc::ptr_eq(&self.picture, &other.picture)
     }
 
-    fn traced(&self, settings: &PictureSettings, limit: usize) -> Traced {
+    pub(crate) fn traced(&self, settings: &PictureSettings, limit: usize) -> Traced {
         let (margins, rows) = (settings.trace.margins.unwrap_or_default(), self.picture.height());
         let picture = margins.within(&self.picture)?;
         let ground = match settings.background {
@@ -134,10 +135,12 @@ impl View {
             _ => self.ground.as_deref().map(|ground| margins.within(ground)).transpose()?,
         };
         let Some(ground) = ground else {
-            return trace_within(&picture, rows, &settings.trace, limit);
+            return trace_within(Looked::at(&picture), rows, &settings.trace, limit);
         };
         let trace = TraceSettings { contrast: Contrast::LightOnDark, ..settings.trace };
-        trace_within(&checked_difference(settings.difference, &picture, &ground)?, rows, &trace, limit)
+        let compared = Compared { picture: &picture, ground: &ground, difference: settings.difference };
+        let looked = Looked { picture: &compared.difference()?, compared: Some(compared) };
+        trace_within(looked, rows, &trace, limit)
     }
 }
 
@@ -305,19 +308,6 @@ impl<S: Iterator<Item = Result<PictureFrame, PictureError>>> PictureOutlines<S> 
             }
         });
     }
-}
-
-fn checked_difference(
-    difference: Difference,
-    picture: &GrayImage,
-    ground: &GrayImage,
-) -> Result<GrayImage, TraceError> {
-    let (width, height) = picture.dimensions();
-    let (background_width, background_height) = ground.dimensions();
-    if (width, height) != (background_width, background_height) {
-        return Err(TraceError::BackgroundSize { width, height, background_width, background_height });
-    }
-    Ok(difference.of(picture, ground))
 }
 
 impl<S: Iterator<Item = Result<PictureFrame, PictureError>>> Iterator for PictureOutlines<S> {

@@ -6,6 +6,7 @@ use crate::margins::Margins;
 use crate::picture_error::TraceError;
 use crate::ring::Ring;
 use crate::threshold::{Levels, Threshold};
+use crate::transfer::Transfer;
 
 /// Standard deviation of the smoothing of two-valued pictures where none is given, in pixels.
 pub(crate) const MASK_SIGMA: f64 = 1.0;
@@ -75,6 +76,9 @@ pub struct TraceSettings {
     pub smoothing: Smoothing,
     /// Whether the outline is moved onto the edge itself.
     pub edges: Edges,
+    /// How grey values stand for light, of which blurred edges are a mean.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub transfer: Transfer,
     /// Smallest object accepted, in pixels.
     pub minimum_area: u64,
     /// Which contours of an object are traced; of one in a ring always the boundary alone.
@@ -103,6 +107,7 @@ impl Default for TraceSettings {
             threshold: Threshold::default(),
             smoothing: Smoothing::default(),
             edges: Edges::default(),
+            transfer: Transfer::default(),
             minimum_area: 9,
             contours: Contours::default(),
             clipping: Clipping::default(),

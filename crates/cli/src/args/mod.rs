@@ -26,7 +26,9 @@ pub(crate) use evaluate::{EvaluateArgs, EvaluateFormat};
 pub(crate) use fit::{FitArgs, FitFormat};
 pub(crate) use identify::{DynamicsChoice, IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionChoice, TrackOptions};
 pub(crate) use outline::OutlineArgs;
-pub(crate) use pictures::{ChannelChoice, ContoursChoice, ObjectsChoice, PictureOptions, RingChoice, through_ffmpeg};
+pub(crate) use pictures::{
+    ChannelChoice, ContoursChoice, ObjectsChoice, PictureOptions, RingChoice, TransferChoice, through_ffmpeg,
+};
 pub(crate) use recognise::{RecogniseArgs, RecogniseFormat};
 pub(crate) use rectify::RectifyArgs;
 pub(crate) use reproduce::ReproduceArgs;

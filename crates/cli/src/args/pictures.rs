@@ -1,7 +1,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use freeform_motion::outline_io::{Channel, Contrast, Margins, Selection, TracingChoice};
+use freeform_motion::outline_io::{Channel, Contrast, Margins, Selection, TracingChoice, Transfer};
 
 use super::values::{not_negative, positive};
 
@@ -74,6 +74,11 @@ pub(crate) struct PictureOptions {
     #[arg(long, value_name = "PIXELS", value_parser = not_negative)]
     pub(crate) smoothing: Option<f64>,
 
+    /// How grey values stand for light, which tells where the edges of a body lie that its motion blurs [default: as it leaves the size of
+    /// the object the same while the way of tracing is chosen, else linear]
+    #[arg(long, value_enum)]
+    pub(crate) transfer: Option<TransferChoice>,
+
     /// Which contours of an object are traced [default: all where holes and marks are seen to be steady while the way of tracing is
     /// chosen, else boundary]
     #[arg(long, value_enum)]
@@ -135,6 +140,7 @@ impl PictureOptions {
             ("--ring", self.ring.is_some()),
             ("--ring-width", self.ring_width.is_some()),
             ("--smoothing", self.smoothing.is_some()),
+            ("--transfer", self.transfer.is_some()),
             ("--contours", self.contours.is_some()),
             ("--candidates", self.candidates.is_some()),
             ("--min-area", self.min_area != SMALLEST_OBJECT),
@@ -161,6 +167,11 @@ impl PictureOptions {
     /// The channel.
     pub(crate) fn channel(&self) -> ChannelChoice {
         self.channel.unwrap_or(ChannelChoice::Luminance)
+    }
+
+    /// How grey values stand for light.
+    pub(crate) fn transfer(&self) -> TransferChoice {
+        self.transfer.unwrap_or(TransferChoice::Linear)
     }
 
     /// Whether holes and marks are traced.
@@ -200,6 +211,7 @@ impl PictureOptions {
             "--background-window",
             "--ring",
             "--ring-width",
+            "--transfer",
             "--contours",
             "--candidates",
             "--margins",
@@ -234,6 +246,7 @@ impl PictureOptions {
                 format!("{}, of at least {} pixels", name(self.objects().to_possible_value()), self.min_area),
             ),
             ("Channel", name(self.channel().to_possible_value())),
+            ("Transfer function", name(self.transfer().to_possible_value())),
             ("Pixel height", self.pixel_size.to_string()),
             ("y", if self.y_down { "downwards" } else { "upwards" }.to_owned()),
         ];
@@ -276,6 +289,23 @@ impl ChannelChoice {
     /// Its name on the command line.
     pub(crate) fn name(self) -> String {
         self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TransferChoice {
+    /// In proportion to it, as those of cameras that measure
+    Linear,
+    /// By the transfer function of sRGB, as those of most cameras and of video
+    Srgb,
+}
+
+impl TransferChoice {
+    pub(crate) const fn transfer(self) -> Transfer {
+        match self {
+            Self::Linear => Transfer::Linear,
+            Self::Srgb => Transfer::Srgb,
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use freeform_motion::sim_camera::{BuiltInShape, PictureScene};
 use super::dynamics::DynamicsArgs;
 use super::identify::MotionChoice;
 use super::simulated::{DisturbanceArgs, TrueMotionArgs};
-use super::values::positive;
+use super::values::{not_negative, positive};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -95,6 +95,14 @@ pub(crate) struct SimulateArgs {
     /// Write JPEG of this quality, 1 to 100, instead of PNG
     #[arg(long, value_name = "QUALITY", requires = "pictures", value_parser = clap::value_parser!(u8).range(1..=100))]
     pub(crate) jpeg: Option<u8>,
+
+    /// How long the shutter is open, in seconds: what moves is blurred
+    #[arg(long, value_name = "SECONDS", requires = "pictures", value_parser = not_negative, default_value_t = 0.0)]
+    pub(crate) exposure: f64,
+
+    /// Grey values are the root of this order of the light: 1 in proportion to it, 2.2 as those of most cameras
+    #[arg(long, requires = "pictures", value_parser = positive, default_value_t = 1.0)]
+    pub(crate) gamma: f64,
 
     /// Where to write the outlines, as Parquet if the name ends so; '-' is standard output
     #[arg(long, short, value_name = "FILE", default_value = "-")]

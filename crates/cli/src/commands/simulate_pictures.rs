@@ -2,7 +2,7 @@
 use std::fs;
 use std::path::Path;
 
-use freeform_motion::sim_camera::{BodyTruth, SimulatedPicture, SimulatedPictures};
+use freeform_motion::sim_camera::{BodyTruth, Rendering, SimulatedPicture, SimulatedPictures};
 use image::codecs::jpeg::JpegEncoder;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder as _};
@@ -20,6 +20,8 @@ const SECONDS: f64 = 2.0;
 pub(super) fn write_pictures(args: &SimulateArgs, folder: &Path) -> Result<(), Failure> {
     let seconds = args.seconds.unwrap_or(SECONDS);
     let pictures = SimulatedPictures::new(args.scene, args.seed, args.fps, seconds).map_err(Failure::unusable)?;
+    let rendering = Rendering { exposure: args.exposure, gamma: args.gamma, ..pictures.rendering() };
+    let pictures = pictures.with_rendering(rendering).map_err(Failure::unusable)?;
     let failed = |error: &std::io::Error| Failure::unusable(format_args!("{}: {}", folder.display(), plain(error)));
     fs::create_dir_all(folder).map_err(|error| failed(&error))?;
     if fs::read_dir(folder).map_err(|error| failed(&error))?.next().is_some() {

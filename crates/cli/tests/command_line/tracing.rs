@@ -31,6 +31,38 @@ fn without_options_the_way_of_tracing_is_found_printed_and_gives_the_same_again(
 }
 
 #[test]
+fn a_body_that_its_motion_blurs_is_measured_by_its_light_where_grey_values_are_those_of_a_camera() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let base = folder.path().to_str().expect("UTF-8");
+    let simulated = |gamma: f64| {
+        let frames = format!("{base}/{gamma}");
+        let scene = format!("--scene accelerating-l --seed 2 --seconds 2 --exposure 0.025 --gamma {gamma}");
+        succeed(&format!("simulate --pictures {frames} {scene}"), "");
+        frames
+    };
+    let [measuring, camera] = [1.0, 2.2].map(simulated);
+    let identified = |frames: &str, options: &str| {
+        let output = run(&format!("identify {frames} --fps 30 --json {options}"), "");
+        let document: serde_json::Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+        let omega = document["objects"][0]["parameters"]["omega"].clone();
+        (stderr(&output), omega["value"].as_f64().expect("a value"), omega["std"].as_f64().expect("a deviation"))
+    };
+    let truth = std::fs::read_to_string(format!("{camera}/truth.csv")).expect("the truth");
+    let last = truth.lines().last().and_then(|row| row.split(',').nth(6)?.parse::<f64>().ok()).expect("omega");
+    let (told, value, deviation) = identified(&camera, "");
+    assert!(told.contains("--transfer srgb (chosen"), "{told}");
+    assert!(!told.contains("wrong_family"), "{told}");
+    assert!((value - last).abs() < 4.0 * deviation, "{value} +- {deviation}, {last}");
+    // What is given is obeyed.
+    let (told, _, of_grey_values) = identified(&camera, "--transfer linear");
+    assert!(!told.contains("--transfer"), "{told}");
+    assert!(deviation < 0.3 * of_grey_values, "{deviation} {of_grey_values}");
+    let (told, value, deviation) = identified(&measuring, "");
+    assert!(!told.contains("--transfer"), "{told}");
+    assert!((value - last).abs() < 4.0 * deviation, "{value} +- {deviation}, {last}");
+}
+
+#[test]
 fn where_the_largest_of_several_objects_is_followed_it_is_said_how_all_are() {
     let folder = tempfile::tempdir().expect("a folder");
     let is_in = |x: u32, y: u32, [cx, cy, radius]: [f64; 3]| (f64::from(x) - cx).hypot(f64::from(y) - cy) < radius;

@@ -2,6 +2,7 @@
 mod beside;
 mod chains;
 mod evidence;
+mod light;
 mod moving;
 mod preference;
 mod rest;
@@ -26,8 +27,10 @@ use crate::picture_outlines::PictureSettings;
 use crate::ring::Ring;
 use crate::threshold::Threshold;
 use crate::trace_settings::{Smoothing, TraceSettings};
+use crate::transfer::Transfer;
 pub use evidence::TracingEvidence;
 use evidence::judged;
+use light::transfer_of;
 use preference::{motion_beside, preferring_what_moves};
 pub(crate) use sample::BURST;
 pub use sample::{PictureSample, SamplePlan};
@@ -76,6 +79,8 @@ pub struct TracingChoice {
     beside: Option<TracingWarning>,
     /// What of the pictures is not looked at: the margins given, or else even bars at their sides.
     pub margins: Margins,
+    /// How grey values stand for light, by the edges that the best shows.
+    pub transfer: Transfer,
 }
 
 /// Ways that are looked at once more, in all pictures of the sample and with their variants.
@@ -208,8 +213,10 @@ pub fn choose_tracing(sample: &PictureSample, base: &PictureSettings, channels: 
         None => sample.bars(),
     };
     let within = (!margins.are_none()).then(|| sample.within(margins));
-    let (candidates, beside) = choose_within(within.as_ref().unwrap_or(sample), base, channels);
-    TracingChoice { candidates, beside, margins }
+    let sample = within.as_ref().unwrap_or(sample);
+    let (candidates, beside) = choose_within(sample, base, channels);
+    let transfer = candidates.first().map_or_else(Transfer::default, |best| transfer_of(sample, base, &best.tracing));
+    TracingChoice { candidates, beside, margins, transfer }
 }
 
 /// The ways, the best first, in pictures without margins, and what moves besides.

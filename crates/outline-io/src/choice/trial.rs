@@ -13,11 +13,12 @@ use crate::contrast::Contrast;
 use crate::edges::median;
 use crate::ground_picture::ground_picture;
 use crate::ground_surface::ground_surface;
-use crate::picture_outlines::PictureSettings;
+use crate::picture_outlines::{PictureSettings, View};
 use crate::ring::Ring;
 use crate::threshold::{beyond_noise, counted};
 use crate::trace::{TracedOutline, blurred, is_two_valued, trace_objects};
 use crate::trace_settings::{Clipping, Contours, Edges, Smoothing, TraceSettings};
+use crate::transfer::Transfer;
 
 /// Most pixels of a picture where ways are tried for the first time.
 const COARSE_PIXELS: u64 = 90_000;
@@ -29,7 +30,7 @@ const COARSE_PICTURES: usize = 9;
 const FINE_PICTURES: usize = 15;
 
 /// Objects looked at in a picture.
-const OBJECTS: usize = 6;
+pub(super) const OBJECTS: usize = 6;
 
 /// A level beyond the noise of the ground is at least so many grey values.
 const LEAST_LEVEL: f64 = 8.0;
@@ -135,6 +136,7 @@ impl Trial {
         };
         *trace = TraceSettings {
             edges: Edges::Isoline,
+            transfer: Transfer::Linear,
             contours: Contours::All,
             clipping: Clipping::Close,
             y_up: false,
@@ -234,6 +236,20 @@ impl Trial {
             Some(edges.systematic.hypot(of_points / edges.deviations.len() as f64))
         });
         median(deviations)
+    }
+
+    /// What a way looks at in each picture, and how.
+    pub(super) fn views(&self, tracing: &Tracing) -> (PictureSettings, Vec<View>) {
+        let settings = self.settings(tracing);
+        let of_picture = |k: usize| {
+            let ground = match settings.background {
+                Some(Background::Picture(_)) => self.ground(tracing, &settings, k).cloned(),
+                _ => None,
+            };
+            View { picture: Arc::clone(&self.pictures[k]), ground }
+        };
+        let views = (0..self.count()).map(of_picture).collect();
+        (settings, views)
     }
 
     /// What a way finds in the first picture in which it finds something.

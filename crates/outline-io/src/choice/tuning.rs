@@ -77,3 +77,19 @@ pub(super) mod ties {
     /// A contour is known clearly better where its deviation is smaller by this factor: deviations are told from edges to some tenths.
     pub(in crate::choice) const CLEARLY: f64 = 1.5;
 }
+
+/// How grey values stand for light.
+pub(super) mod light {
+    /// Outlines are of one body, or of bodies that are alike, where their sizes differ by less than this share: blur by half the size of a body moves
+    /// its edges by less than a tenth of it.
+    pub(in crate::choice) const ALIKE: f64 = 0.1;
+
+    /// Pictures of a body that tell how its size changes.
+    pub(in crate::choice) const FEWEST: usize = 6;
+
+    /// Sizes that change by less than this, in pixels, tell nothing: noise and the grid of pixels change them by as much.
+    pub(in crate::choice) const LEAST_SPREAD: f64 = 0.02;
+
+    /// The light is taken where it leaves less than this share of the change.
+    pub(in crate::choice) const LESS: f64 = 0.6;
+}

@@ -266,13 +266,14 @@ impl Station {
             (0.5..width - 0.5).contains(&p.x) && (0.5..height - 0.5).contains(&p.y)
         });
         values.clear();
+        let pixels = picture.as_raw();
         if is_within {
             values.extend((0..=2 * reach).map(|k| {
                 let at = place + SPACING * (k as f64 - reach as f64) * normal;
                 let line = |line: i32| {
                     // Places are told from the corner of the picture here.
                     let beside = at + LINES_APART * f64::from(line) * along - Vector2::repeat(0.5);
-                    interpolated(picture, beside, f64::from)
+                    interpolated(picture.dimensions(), beside, |pixel| f64::from(pixels[pixel]))
                 };
                 (-LINES..=LINES).map(line).sum::<f64>() / f64::from(2 * LINES + 1)
             }));

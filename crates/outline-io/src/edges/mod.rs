@@ -16,7 +16,9 @@ use freeform_curve_fit::isoline::Crossing;
 use image::GrayImage;
 use nalgebra::{Point2, Vector2};
 
+use crate::compared::Compared;
 use crate::contrast::Contrast;
+use crate::transfer::Transfer;
 pub use edge_profile::{EdgeProfile, SoughtEdges};
 
 use crossings::{Moved, undo_crossings};
@@ -73,7 +75,8 @@ pub struct EdgeFit {
     /// rounding of grey values, and light that changes on one side of the edge; of edges that are [those of pixels](Self::is_on_pixels) their
     /// rounding too.
     pub systematic: f64,
-    /// Median height of the step, in grey values; positive.
+    /// Median height of the step, in grey values; positive. Where these do not stand for light in proportion, it is the light, of which the grey
+    /// values in the middle of the edges are the scale.
     pub contrast: f64,
     /// Width of the edges: the standard deviation of their Gaussian blur, in pixels.
     pub blur: f64,
@@ -104,8 +107,12 @@ impl EdgeFit {
 /// What is looked at of a picture.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct EdgeSource<'a> {
+    /// In which objects are looked for: a picture, or its difference from what it is compared with.
     pub(crate) picture: &'a GrayImage,
+    /// Of what it is the difference, if of anything.
+    pub(crate) compared: Option<Compared<'a>>,
     pub(crate) contrast: Contrast,
+    pub(crate) transfer: Transfer,
     /// Standard deviation of the smoothing along the contour, in points; 0 for none.
     pub(crate) along: f64,
 }
@@ -142,7 +149,7 @@ impl EdgeSource<'_> {
         let at = |c: &Crossing| Point2::new(left as f64 + c.x, top as f64 + c.y);
         let points: Vec<Point2<f64>> = line.iter().map(at).collect();
         let normals: Vec<Option<Vector2<f64>>> = (0..line.len()).map(|i| outward(line, i)).collect();
-        let (edges, fit) = Sampler::new(self.picture, self.contrast).fitted(&points, &normals)?;
+        let (edges, fit) = Sampler::new(self, &points).fitted(&points, &normals)?;
         let width = fit.width();
         let own = |i: &usize| normals[*i].is_some();
         let all: Vec<usize> = (0..line.len()).filter(own).collect();
@@ -194,18 +201,16 @@ impl EdgeSource<'_> {
     }
 }
 
-/// A value between the pixels, whose centres are at whole numbers, by bilinear interpolation of those of the pixels around. Beyond the picture
-/// its edge goes on.
+/// A value between the pixels of a picture of this size, whose centres are at whole numbers, by bilinear interpolation of those of the pixels around,
+/// which are numbered row by row. Beyond the picture its edge goes on.
 #[inline]
-fn interpolated(picture: &GrayImage, place: Point2<f64>, value: impl Fn(u8) -> f64) -> f64 {
-    let (width, height) = (picture.width() as usize, picture.height() as usize);
+fn interpolated((width, height): (u32, u32), place: Point2<f64>, pixel: impl Fn(usize) -> f64) -> f64 {
+    let (width, height) = (width as usize, height as usize);
     let (x, y) = (place.x.clamp(0.0, (width - 1) as f64), place.y.clamp(0.0, (height - 1) as f64));
     let (column, row) = ((x as usize).min(width.saturating_sub(2)), (y as usize).min(height.saturating_sub(2)));
     let (u, v) = (x - column as f64, y - row as f64);
-    let pixels = picture.as_raw();
     let (right, below) = (usize::from(width > 1), if height > 1 { width } else { 0 });
     let at = row * width + column;
-    let pixel = |index: usize| value(pixels[index]);
     let upper = pixel(at) + u * (pixel(at + right) - pixel(at));
     let lower = pixel(at + below) + u * (pixel(at + below + right) - pixel(at + below));
     upper + v * (lower - upper)

@@ -96,7 +96,7 @@ impl SimulatedPictures {
         if width == 0 || height == 0 || width.checked_mul(height).is_none_or(|pixels| pixels > limit) {
             return Err(SimulationError::MaskSize { width, height, limit });
         }
-        let Rendering { ground, contrast, blur, shading, noise, shadow, line, .. } = rendering;
+        let Rendering { ground, contrast, blur, shading, noise, shadow, line, exposure, gamma, .. } = rendering;
         for (setting, value, range, [least, most]) in [
             ("ground", ground, "0 to 255", [0.0, 255.0]),
             ("contrast", contrast, "-255 to 255", [-255.0, 255.0]),
@@ -105,6 +105,8 @@ impl SimulatedPictures {
             ("noise of the pictures", noise, "0 to 255", [0.0, 255.0]),
             ("shadow", shadow, "0 to 1", [0.0, 1.0]),
             ("line", line, "0 to 100 pixels", [0.0, 100.0]),
+            ("exposure", exposure, "0 to 3600 s", [0.0, 3600.0]),
+            ("gamma", gamma, "0.1 to 10", [0.1, 10.0]),
         ] {
             if !(least..=most).contains(&value) {
                 return Err(SimulationError::OutOfRange { setting, value, range });

@@ -13,7 +13,7 @@ const SHADOW_BLUR: f64 = 2.5;
 
 /// What a camera makes of a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Rendering {
     /// Columns and rows.
     pub size: [usize; 2],
@@ -23,7 +23,7 @@ pub struct Rendering {
     pub contrast: f64,
     /// Standard deviation of the Gaussian that the camera blurs with, in pixels; the square of the pixel comes on top.
     pub blur: f64,
-    /// How much darker the right edge of the picture is than the left one, as a share of the contrast.
+    /// How much darker the right edge of the picture is than the left one, in grey values, as a share of the contrast.
     pub shading: f64,
     /// Standard deviation of the noise of the sensor, in grey values.
     pub noise: f64,
@@ -31,33 +31,78 @@ pub struct Rendering {
     pub shadow: f64,
     /// Width of a dark line around a body that has the grey value of the ground, in pixels; 0: bodies are filled.
     pub line: f64,
+    /// How long the shutter is open, in seconds, half of it before the time of the picture: what moves is blurred. 0: an instant.
+    pub exposure: f64,
+    /// Grey values are the root of this order of the light, which blurred edges are a mean of; 1: in proportion to it, 2.2: as those of most cameras.
+    pub gamma: f64,
 }
 
 impl Default for Rendering {
-    /// 640 x 480 pixels, ground 60, bodies 140 lighter, blur of 1 pixel, no shading, noise of 3 grey values, no shadow, no line.
+    /// 640 x 480 pixels, ground 60, bodies 140 lighter, blur of 1 pixel, no shading, noise of 3 grey values, no shadow, no line, an instant, grey
+    /// values in proportion to the light.
     fn default() -> Self {
         let (size, ground, contrast) = ([640, 480], 60.0, 140.0);
-        Self { size, ground, contrast, blur: 1.0, shading: 0.0, noise: 3.0, shadow: 0.0, line: 0.0 }
+        let (shadow, line, exposure, gamma) = (0.0, 0.0, 0.0, 1.0);
+        Self { size, ground, contrast, blur: 1.0, shading: 0.0, noise: 3.0, shadow, line, exposure, gamma }
     }
 }
 
 impl Rendering {
     /// The grey values of a picture at a time, row by row from the top.
     pub(super) fn picture(&self, bodies: &[Body], time: f64, noise: &mut impl Rng) -> Vec<u8> {
+        let mut light = self.exposed(bodies, time);
+        let width = self.size[0];
+        blur(&mut light, width, self.blur);
+        let step = self.shading * self.contrast.abs() / width as f64;
+        let shades = (0..width).map(|column| step * (column as f64 + 0.5)).cycle();
+        let noisy = |(light, shade): (f64, f64)| {
+            let error: f64 = StandardNormal.sample(noise);
+            (self.grey_of(light) - shade + self.noise * error).round().clamp(0.0, 255.0) as u8
+        };
+        light.into_iter().zip(shades).map(noisy).collect()
+    }
+
+    /// The grey value of a light, both 0 to 255.
+    fn grey_of(&self, light: f64) -> f64 {
+        if self.gamma == 1.0 { light } else { 255.0 * (light.max(0.0) / 255.0).powf(self.gamma.recip()) }
+    }
+
+    /// The light of a grey value.
+    fn light_of(&self, grey: f64) -> f64 {
+        if self.gamma == 1.0 { grey } else { 255.0 * (grey.max(0.0) / 255.0).powf(self.gamma) }
+    }
+
+    /// The mean of the light while the shutter is open.
+    fn exposed(&self, bodies: &[Body], time: f64) -> Vec<f64> {
+        let ends = [-0.5, 0.5].map(|share| time + share * self.exposure);
+        let count = instants(bodies, ends);
+        let at = |k: usize| self.light(bodies, time + ((k as f64 + 0.5) / count as f64 - 0.5) * self.exposure);
+        let mut sum = at(0);
+        for k in 1..count {
+            sum.iter_mut().zip(at(k)).for_each(|(sum, light)| *sum += light);
+        }
+        if count > 1 {
+            sum.iter_mut().for_each(|sum| *sum /= count as f64);
+        }
+        sum
+    }
+
+    /// The light at a time.
+    fn light(&self, bodies: &[Body], time: f64) -> Vec<f64> {
         let [width, height] = self.size;
         let rows = height as f64;
         let cover = |contours: &[Vec<Point2<f64>>]| covered_shares(contours.iter().map(Vec::as_slice), self.size);
-        let mut grey = vec![self.ground; width * height];
+        let mut all = vec![self.light_of(self.ground); width * height];
         if self.shadow > 0.0 {
-            let mut light = vec![1.0; width * height];
+            let mut shades = vec![1.0; width * height];
             for body in bodies {
                 let shade = cover(&body.in_picture(time, Vector2::from(SHADOW_SHIFT), rows));
-                light.iter_mut().zip(shade).for_each(|(light, share)| *light *= 1.0 - self.shadow * share);
+                shades.iter_mut().zip(shade).for_each(|(shade, share)| *shade *= 1.0 - self.shadow * share);
             }
-            blur(&mut light, width, SHADOW_BLUR);
-            grey.iter_mut().zip(light).for_each(|(grey, light)| *grey *= light);
+            blur(&mut shades, width, SHADOW_BLUR);
+            all.iter_mut().zip(shades).for_each(|(light, shade)| *light *= shade);
         }
-        let value = self.ground + self.contrast;
+        let value = self.light_of(self.ground + self.contrast);
         for body in bodies {
             let contours = body.in_picture(time, Vector2::zeros(), rows);
             let mut share = cover(&contours);
@@ -65,19 +110,20 @@ impl Rendering {
                 let within: Vec<_> = contours.iter().map(|contour| inset(contour, self.line)).collect();
                 share.iter_mut().zip(cover(&within)).for_each(|(share, within)| *share -= within);
             }
-            grey.iter_mut().zip(share).for_each(|(grey, share)| *grey += share * (value - *grey));
+            all.iter_mut().zip(share).for_each(|(light, share)| *light += share * (value - *light));
         }
-        let step = self.shading * self.contrast.abs() / width as f64;
-        for row in grey.chunks_exact_mut(width) {
-            row.iter_mut().enumerate().for_each(|(column, grey)| *grey -= step * (column as f64 + 0.5));
-        }
-        blur(&mut grey, width, self.blur);
-        let noisy = |grey: f64| {
-            let error: f64 = StandardNormal.sample(noise);
-            (grey + self.noise * error).round().clamp(0.0, 255.0) as u8
-        };
-        grey.into_iter().map(noisy).collect()
+        all
     }
+}
+
+/// How many instants stand for the time between two: no point goes farther than a pixel from one to the next, but that there are no more than 64.
+fn instants(bodies: &[Body], ends: [f64; 2]) -> usize {
+    let way = |body: &Body| {
+        let [first, last] = ends.map(|time| body.in_picture(time, Vector2::zeros(), 0.0));
+        let ways = first.into_iter().flatten().zip(last.into_iter().flatten()).map(|(p, q)| (q - p).norm());
+        ways.fold(0.0, f64::max)
+    };
+    bodies.iter().map(way).fold(1.0, f64::max).ceil().min(64.0) as usize
 }
 
 /// A contour moved inwards by a distance; that of a hole, which runs the other way round, outwards.

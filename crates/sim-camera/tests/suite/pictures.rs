@@ -81,6 +81,41 @@ fn noise_blur_shading_shadow_and_line_do_what_they_say() {
 }
 
 #[test]
+fn what_moves_while_the_shutter_is_open_is_a_mean_of_its_light_and_no_more_of_it() {
+    let first = |rendering: Rendering| {
+        let pictures = SimulatedPictures::new(PictureScene::AcceleratingL, 3, 30.0, 0.1).expect("a sequence");
+        pictures.with_rendering(rendering).expect("a rendering").iter().nth(2).expect("a picture").grey
+    };
+    let plain = Rendering { ground: 100.0, contrast: 80.0, blur: 0.0, noise: 0.0, ..Rendering::default() };
+    let (sharp, blurred) = (first(plain), first(Rendering { exposure: 0.1, ..plain }));
+    let between = |grey: &[u8]| grey.iter().filter(|grey| (105..175).contains(*grey)).count();
+    assert!(between(&blurred) > 2 * between(&sharp), "{} {}", between(&blurred), between(&sharp));
+    // Of a turn with acceleration the middle of the exposure is not quite where the mean is.
+    let light = |grey: &[u8]| grey.iter().map(|grey| f64::from(*grey) - 100.0).sum::<f64>();
+    assert!((light(&blurred) / light(&sharp) - 1.0).abs() < 2e-3, "{} {}", light(&blurred), light(&sharp));
+    let as_cameras_do = first(Rendering { exposure: 0.1, gamma: 2.2, ..plain });
+    let [least, most] = [as_cameras_do.iter().min(), as_cameras_do.iter().max()];
+    assert_eq!((least, most), (Some(&100), Some(&180)));
+    let decoded: Vec<f64> = as_cameras_do.iter().map(|grey| (f64::from(*grey) / 255.0).powf(2.2)).collect();
+    let [ground, body] = [100.0_f64, 180.0].map(|grey| (grey / 255.0).powf(2.2));
+    let share = |shares: &[f64]| shares.iter().sum::<f64>();
+    let of_light: Vec<f64> = decoded.iter().map(|light| (light - ground) / (body - ground)).collect();
+    let of_grey: Vec<f64> = blurred.iter().map(|grey| (f64::from(*grey) - 100.0) / 80.0).collect();
+    assert!((share(&of_light) / share(&of_grey) - 1.0).abs() < 2e-3, "{} {}", share(&of_light), share(&of_grey));
+    assert!(light(&as_cameras_do) > 1.01 * light(&blurred), "it seems to be larger");
+    let refused = |rendering: Rendering| {
+        let pictures = SimulatedPictures::new(PictureScene::Gear, 3, 30.0, 0.1).expect("a sequence");
+        pictures.with_rendering(rendering).expect_err("out of range").to_string()
+    };
+    for exposure in [-0.1, f64::NAN, f64::INFINITY] {
+        assert!(refused(Rendering { exposure, ..plain }).contains("exposure"));
+    }
+    for gamma in [0.0, -1.0, f64::NAN] {
+        assert!(refused(Rendering { gamma, ..plain }).contains("gamma"));
+    }
+}
+
+#[test]
 fn the_same_seed_gives_the_same_pictures_and_names_read_back() {
     for scene in PictureScene::ALL {
         assert_eq!(scene.name().parse(), Ok(scene));
