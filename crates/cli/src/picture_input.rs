@@ -11,7 +11,7 @@ use std::thread::available_parallelism;
 use freeform_drawing::{MeaningOfB, candidate_sheet};
 use freeform_motion::outline_io::{
     Channel, LabelPictures, OutlineUncertainty, PictureError, PictureErrorKind, PicturePreview, PictureSequence,
-    PictureSettings, TraceSettings, TracedPicture, TracedPictures, TracingEvidence, read_ahead,
+    PictureSettings, TracedPicture, TracedPictures, TracingEvidence, read_ahead,
 };
 use freeform_motion::riccati::CameraScale;
 use freeform_motion::short;
@@ -355,8 +355,7 @@ fn draw_candidates(
 ) -> Result<(), Failure> {
     let Some((path, Chosen { choice, .. })) = path.zip(chosen) else { return Ok(()) };
     let name = |candidate: &TracingEvidence| options_of(&candidate.tracing).join(" ");
-    let base = PictureSettings { trace: TraceSettings { margins: Some(choice.margins), ..base.trace }, ..base.clone() };
-    let sheet = candidate_sheet(preview, &base, &choice.candidates, name);
+    let sheet = candidate_sheet(preview, &choice.base(base), &choice.candidates, name);
     let mut bytes = Cursor::new(Vec::new());
     let written = sheet.write_to(&mut bytes, ImageFormat::Png);
     written.map_err(|error| Failure::unusable(format_args!("{}: {error}", path.display())))?;

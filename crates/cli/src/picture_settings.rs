@@ -4,7 +4,7 @@ use freeform_motion::outline_io::{
     SequenceSettings, Smoothing, Threshold, TraceSettings, read_picture_channel,
 };
 
-use crate::args::PictureOptions;
+use crate::args::{ChannelChoice, PictureOptions, TransferChoice};
 use crate::failure::{Failure, plain};
 
 /// Pictures that the running median is taken of where no other number is given.
@@ -29,6 +29,11 @@ pub(crate) fn picture_settings(
     if options.background_window.is_some() && !is_median {
         return Err(Failure::unusable(
             "--background-window: how many pictures the median is of, so only for --background median",
+        ));
+    }
+    if options.transfer() == TransferChoice::Srgb && options.channel() == ChannelChoice::Saturation {
+        return Err(Failure::unusable(
+            "--transfer srgb: the saturation of colours is no light, so not with --channel saturation",
         ));
     }
     let background = match &options.background {

@@ -181,6 +181,26 @@ pub struct Piece<'a> {
 }
 
 impl Outline {
+    /// Length of all contours or arcs; of contours the sides that close them included.
+    ///
+    /// ```
+    /// use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
+    /// use nalgebra::Point2;
+    ///
+    /// let corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]].map(Point2::from).to_vec();
+    /// assert_eq!(Outline::closed(corners.clone())?.length(), 8.0);
+    /// assert_eq!(Outline::Open(OpenOutline::new(vec![OpenArc::new(corners)?])?).length(), 6.0);
+    /// # Ok::<(), freeform_curve_fit::OutlineError>(())
+    /// ```
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        let of_piece = |piece: Piece<'_>| {
+            let open = sides(piece.points).take(piece.points.len() - usize::from(!piece.closed));
+            open.map(|(_, side)| side.norm()).sum::<f64>()
+        };
+        self.pieces().map(of_piece).sum()
+    }
+
     /// A closed outline from its points; see [`ClosedOutline::new`].
     ///
     /// # Errors

@@ -25,8 +25,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let choice = choose_tracing(&sample, &base, &[]);
     println!(
-        "read in {read:?}, chosen in {:?}; warnings: {:?}",
+        "read in {read:?}, chosen in {:?}; transfer function {:?}; warnings: {:?}",
         started.elapsed() - read,
+        choice.transfer,
         choice.warnings().collect::<Vec<_>>()
     );
     println!("score found steady even contrast smooth moved rests clipped area objects");

@@ -22,19 +22,11 @@ impl AffineMomentInvariants {
     /// Of the polygon through the points, either way round; `None` where it encloses nothing.
     pub(crate) fn of(points: &(impl Iterator<Item = Point2<f64>> + Clone)) -> Option<Self> {
         let area = AreaAndCentre::of(points);
-        // Integrals of homogeneous functions over the triangles between the centre and the edges.
-        let integrals = |f: &mut dyn FnMut(Vector2<f64>, f64)| {
-            for (p, q) in edges(points) {
-                let (p, q) = (p - area.centre, q - area.centre);
-                let cross = p.perp(&q) / area.signed_area;
-                GAUSS.iter().for_each(|(place, weight)| f(p + (q - p) * *place, cross * weight));
-            }
-        };
-        let covariance = SecondMoments::about(&area, points).0;
+        let SecondMoments(covariance) = SecondMoments::about(&area, points);
         let unit = covariance.cholesky()?.l().try_inverse()?;
         let zero = Complex::new(0.0, 0.0);
         let (mut c21, mut c30, mut c22, mut c31, mut c40) = (zero, zero, 0.0, zero, zero);
-        integrals(&mut |r, weight| {
+        area.integrals(points, |r, weight| {
             let r = unit * r;
             let (z, square) = (Complex::new(r.x, r.y), r.norm_squared());
             c21 += z * (square * weight / 5.0);
@@ -74,14 +66,7 @@ impl SecondMoments {
 
     fn about(area: &AreaAndCentre, points: &(impl Iterator<Item = Point2<f64>> + Clone)) -> Self {
         let mut moments = Matrix2::zeros();
-        for (p, q) in edges(points) {
-            let (p, q) = (p - area.centre, q - area.centre);
-            let cross = p.perp(&q) / area.signed_area;
-            for (place, weight) in GAUSS {
-                let r = p + (q - p) * place;
-                moments += cross * weight / 4.0 * r * r.transpose();
-            }
-        }
+        area.integrals(points, |r, weight| moments += weight / 4.0 * r * r.transpose());
         Self(moments)
     }
 
@@ -113,6 +98,15 @@ impl AreaAndCentre {
         }
         let centre = if doubled == 0.0 { origin } else { origin + moment / (3.0 * doubled) };
         Self { signed_area: 0.5 * doubled, centre }
+    }
+
+    /// Integrals of homogeneous functions over the triangles between the centre and the edges: from the centre, with weights by the area.
+    fn integrals(&self, points: &(impl Iterator<Item = Point2<f64>> + Clone), mut add: impl FnMut(Vector2<f64>, f64)) {
+        for (p, q) in edges(points) {
+            let (p, q) = (p - self.centre, q - self.centre);
+            let cross = p.perp(&q) / self.signed_area;
+            GAUSS.iter().for_each(|(place, weight)| add(p + (q - p) * *place, cross * weight));
+        }
     }
 }
 

@@ -8,7 +8,6 @@ use std::time::{Duration, Instant};
 use image::GrayImage;
 
 use crate::background::{Background, Difference, RunningMedian};
-use crate::compared::{Compared, Looked};
 use crate::contacts::AfterContact;
 use crate::contrast::Contrast;
 use crate::ground_surface::ground_surface;
@@ -17,6 +16,7 @@ use crate::picture_error::{PictureError, TraceError};
 use crate::picture_sequence::PictureFrame;
 use crate::trace::{TracedOutline, trace_within};
 use crate::trace_settings::TraceSettings;
+use crate::tracing_input::{GroundComparison, TracingInput};
 
 /// Pixels of the pictures that are traced side by side, at most: two pictures of 1920 x 1080, or one that is larger. What is worked with is some
 /// tens of bytes for each, which a picture of the largest size takes alone.
@@ -94,13 +94,13 @@ pub struct PictureOutlines<S> {
     /// Pictures traced side by side.
     at_once: usize,
     /// Pictures traced and not yet handed on.
-    traced: VecDeque<Result<(PictureFrame, Traced), PictureError>>,
+    traced: VecDeque<Result<(PictureFrame, TracedObjects), PictureError>>,
     /// Of the last picture traced, which may come again.
-    latest: Option<(View, Traced)>,
+    latest: Option<(View, TracedObjects)>,
 }
 
 /// What is traced in a picture.
-pub(crate) type Traced = Result<Vec<TracedOutline>, TraceError>;
+pub(crate) type TracedObjects = Result<Vec<TracedOutline>, TraceError>;
 
 /// What is looked at.
 #[derive(Debug, Clone)]
@@ -112,8 +112,8 @@ pub(crate) struct View {
 
 /// The tracing of a picture.
 enum Tracing<'a> {
-    Done(Traced),
-    Begun(ScopedJoinHandle<'a, Traced>),
+    Done(TracedObjects),
+    Begun(ScopedJoinHandle<'a, TracedObjects>),
     /// The picture before shows the same.
     AsBefore,
 }
@@ -127,7 +127,7 @@ impl View {
         is_same_ground && Arc::ptr_eq(&self.picture, &other.picture)
     }
 
-    pub(crate) fn traced(&self, settings: &PictureSettings, limit: usize) -> Traced {
+    pub(crate) fn traced(&self, settings: &PictureSettings, limit: usize) -> TracedObjects {
         let (margins, rows) = (settings.trace.margins.unwrap_or_default(), self.picture.height());
         let picture = margins.within(&self.picture)?;
         let ground = match settings.background {
@@ -135,12 +135,12 @@ impl View {
             _ => self.ground.as_deref().map(|ground| margins.within(ground)).transpose()?,
         };
         let Some(ground) = ground else {
-            return trace_within(Looked::at(&picture), rows, &settings.trace, limit);
+            return trace_within(TracingInput::plain(&picture), rows, &settings.trace, limit);
         };
         let trace = TraceSettings { contrast: Contrast::LightOnDark, ..settings.trace };
-        let compared = Compared { picture: &picture, ground: &ground, difference: settings.difference };
-        let looked = Looked { picture: &compared.difference()?, compared: Some(compared) };
-        trace_within(looked, rows, &trace, limit)
+        let comparison = GroundComparison { picture: &picture, ground: &ground, difference: settings.difference };
+        let input = TracingInput { picture: &comparison.difference()?, comparison: Some(comparison) };
+        trace_within(input, rows, &trace, limit)
     }
 }
 

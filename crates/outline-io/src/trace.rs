@@ -6,7 +6,6 @@ use image::GrayImage;
 use nalgebra::Point2;
 
 use crate::affine_moment_invariants::{AffineMomentInvariants, AreaAndCentre};
-use crate::compared::Looked;
 use crate::contrast::signal;
 use crate::edges::{EdgeFit, EdgeSource, OF_POINT, UNSEEN};
 use crate::field::{Field, blur_reach};
@@ -15,6 +14,7 @@ use crate::picture_error::TraceError;
 use crate::ring::{self, Ring};
 use crate::threshold::{Levels, level_in_picture};
 use crate::trace_settings::{Clipping, Contours, Edges, Smoothing, TraceSettings};
+use crate::tracing_input::TracingInput;
 
 /// Most points of all outlines of one picture: many times those of objects that have any, and few enough to be worked on. The
 /// picture of a comb of 84 kB would have 34 million.
@@ -87,20 +87,20 @@ pub fn trace_objects(
 ) -> Result<Vec<TracedOutline>, TraceError> {
     let margins = settings.margins.unwrap_or_default();
     let left = margins.within(picture)?;
-    trace_within(Looked::at(&left), picture.height(), settings, limit)
+    trace_within(TracingInput::plain(&left), picture.height(), settings, limit)
 }
 
 /// Like [`trace_objects`], in what the margins leave of a picture of so many rows.
 pub(crate) fn trace_within(
-    looked: Looked<'_>,
+    input: TracingInput<'_>,
     rows: u32,
     settings: &TraceSettings,
     limit: usize,
 ) -> Result<Vec<TracedOutline>, TraceError> {
     settings.check()?;
     let traced = match settings.ring {
-        Some(ring) => ring_outlines((looked.picture, rows), settings, ring, limit)?,
-        None => mask_outlines((looked, rows), settings, limit)?,
+        Some(ring) => ring_outlines((input.picture, rows), settings, ring, limit)?,
+        None => mask_outlines((input, rows), settings, limit)?,
     };
     let mut outlines = Vec::new();
     let (mut refused, mut points) = (None, 0);
@@ -149,11 +149,11 @@ fn ring_outlines<'a>(
 }
 
 fn mask_outlines<'a>(
-    (looked, rows): (Looked<'a>, u32),
+    (input, rows): (TracingInput<'a>, u32),
     settings: &'a TraceSettings,
     limit: usize,
 ) -> Result<Traced<'a>, TraceError> {
-    let Looked { picture, compared } = looked;
+    let TracingInput { picture, comparison } = input;
     // Two-valued pictures are smoothed where the outline is traced, others before objects are looked for in them.
     let smooth = match settings.smoothing {
         Smoothing::Gaussian(sigma) if sigma > 0.0 && !is_two_valued(picture) => Some(blurred(picture, sigma)),
@@ -167,7 +167,7 @@ fn mask_outlines<'a>(
     };
     let edges = (settings.edges == Edges::Refined && !levels.two_valued).then_some(EdgeSource {
         picture: raw,
-        compared,
+        comparison,
         contrast: settings.contrast,
         transfer: settings.transfer,
         along: match settings.smoothing {

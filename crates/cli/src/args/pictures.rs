@@ -74,9 +74,9 @@ pub(crate) struct PictureOptions {
     #[arg(long, value_name = "PIXELS", value_parser = not_negative)]
     pub(crate) smoothing: Option<f64>,
 
-    /// How grey values stand for light, which tells where the edges of a body lie that its motion blurs [default: as it leaves the size of
-    /// the object the same while the way of tracing is chosen, else linear]
-    #[arg(long, value_enum)]
+    /// How grey values stand for light: it tells where edges lie that motion blurs [default: srgb where objects keep their size by it
+    /// while the way of tracing is chosen, else linear]
+    #[arg(long, value_enum, conflicts_with = "ring")]
     pub(crate) transfer: Option<TransferChoice>,
 
     /// Which contours of an object are traced [default: all where holes and marks are seen to be steady while the way of tracing is

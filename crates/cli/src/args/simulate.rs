@@ -96,11 +96,11 @@ pub(crate) struct SimulateArgs {
     #[arg(long, value_name = "QUALITY", requires = "pictures", value_parser = clap::value_parser!(u8).range(1..=100))]
     pub(crate) jpeg: Option<u8>,
 
-    /// How long the shutter is open, in seconds: what moves is blurred
+    /// How long the shutter is open, in seconds, at most the time between two pictures: what moves is blurred
     #[arg(long, value_name = "SECONDS", requires = "pictures", value_parser = not_negative, default_value_t = 0.0)]
     pub(crate) exposure: f64,
 
-    /// Grey values are the root of this order of the light: 1 in proportion to it, 2.2 as those of most cameras
+    /// Grey values are those of the light to the power of 1 / GAMMA, 0.1 to 10: 1 in proportion to it, 2.2 as those of most cameras
     #[arg(long, requires = "pictures", value_parser = positive, default_value_t = 1.0)]
     pub(crate) gamma: f64,
 

@@ -57,6 +57,11 @@ fn a_body_that_its_motion_blurs_is_measured_by_its_light_where_grey_values_are_t
     let (told, _, of_grey_values) = identified(&camera, "--transfer linear");
     assert!(!told.contains("--transfer"), "{told}");
     assert!(deviation < 0.3 * of_grey_values, "{deviation} {of_grey_values}");
+    for options in ["--channel saturation --light", "--ring dark"] {
+        let refused = run(&format!("identify {camera} --fps 30 --transfer srgb {options}"), "");
+        assert_eq!(refused.status.code(), Some(2), "{options}");
+        assert!(stderr(&refused).contains("--transfer"), "{options}: {}", stderr(&refused));
+    }
     let (told, value, deviation) = identified(&measuring, "");
     assert!(!told.contains("--transfer"), "{told}");
     assert!((value - last).abs() < 4.0 * deviation, "{value} +- {deviation}, {last}");

@@ -32,7 +32,8 @@ impl MotionFilter {
         self.track()?.disagreeing_part()
     }
 
-    /// Counted up from 0 where poses no longer go back to the same first outline: after a [restart](Self::restarts), and where a frame has shown the
+    /// Counted up from 0 where poses no longer go back to the same first outline: after a [restart](Self::restarts), where a second frame has shown far
+    /// more of the object than the first, and where a frame has shown the
     /// turn of the object for the first time, since nobody knows how far it had turned until then, and where an [edge](Self::standing_edges) was
     /// found not to be of the object.
     #[must_use]

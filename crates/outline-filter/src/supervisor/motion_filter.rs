@@ -198,7 +198,8 @@ impl MotionFilter {
         };
         self.search_memory.budget.add_frame(self.phase == Phase::Tracking);
         let mut rejection = outcome.map_or(Some(Rejection::NotFound), |outcome| outcome.verdict.err());
-        if rejection.is_some() && self.begin_with_more(time, outline) {
+        let was_sought = outcome.is_some();
+        if was_sought && rejection.is_some() && self.begin_with_more(time, outline) {
             return (None, None);
         }
         let is_found_elsewhere = rejection.is_none() && self.phase == Phase::Acquiring;

@@ -1,5 +1,5 @@
 //! Maps begun from a frame, and begun again where that frame did not show the object.
-use freeform_curve_fit::{Outline, Piece};
+use freeform_curve_fit::Outline;
 
 use super::{
     counts::Counts,
@@ -63,18 +63,17 @@ impl MotionFilter {
         }
     }
 
-    /// Begins anew with a frame that shows far more of the object than the one frame before, where the part that this showed lies nowhere on it: what
-    /// comes in over the edge of the picture shows a corner first. Nothing rests on that but where it was. Whether it has begun.
+    /// Begins anew with a second frame that shows far more of the object than the first, which showed a part of it that was not found on the second: what
+    /// comes in over the edge of the picture shows a corner first. Where that part was is all that the first frame has told. Whether it begins so.
     pub(super) fn begin_with_more(&mut self, time: f64, outline: &Outline) -> bool {
-        let is_first = self.phase == Phase::Acquiring && self.counts.accepted_by_track == 1;
-        let is_of_part = self.track.as_ref().is_some_and(Track::was_begun_with_part);
-        let shows_more =
-            self.window.first().is_some_and(|first| length_of(outline) > tuning::FAR_MORE * length_of(first));
-        let is_begun = is_first
-            && self.counts.rejected_by_track == 0
-            && is_of_part
-            && shows_more
-            && self.start(time, outline).is_ok();
+        let Counts { accepted_by_track, rejected_by_track, .. } = self.counts;
+        let is_second = self.phase == Phase::Acquiring && (accepted_by_track, rejected_by_track) == (1, 0);
+        if !is_second || !self.track.as_ref().is_some_and(Track::was_begun_with_part) {
+            return false;
+        }
+        let part = self.window.first().map(Outline::length);
+        let is_begun =
+            part.is_some_and(|part| outline.length() > tuning::FAR_MORE * part) && self.start(time, outline).is_ok();
         if is_begun {
             self.counts.begun_with_more += 1;
             self.counts.accepted_in_recording += 1;
@@ -142,16 +141,6 @@ impl MotionFilter {
         }
         do_others_agree
     }
-}
-
-/// Length of all that an outline shows.
-fn length_of(outline: &Outline) -> f64 {
-    let of_piece = |piece: Piece<'_>| {
-        let ends = piece.points.first().zip(piece.points.last()).filter(|_| piece.closed);
-        let sides = piece.points.windows(2).map(|side| (side[1] - side[0]).norm()).sum::<f64>();
-        sides + ends.map_or(0.0, |(first, last)| (first - last).norm())
-    };
-    outline.pieces().map(of_piece).sum()
 }
 
 #[cfg(feature = "serde")]

@@ -23,8 +23,8 @@ pub(crate) mod motion_change {
 pub(crate) mod supervisor {
     /// Frames in a row that may repeat one that was stored several times: 24 pictures a second are stored as 60 with two or three times each.
     pub(crate) const MOST_REPEATED: usize = 3;
-    /// A second frame shows far more of the object than the first where its outline is longer by this factor: of a first that shows two thirds enough is
-    /// known to find it.
+    /// A second frame shows far more of the object than the first where its outline is longer by this factor: then fewer of its points lie on that part
+    /// than have to agree, which are 0.7 of them, so that the part cannot be found on it.
     pub(crate) const FAR_MORE: f64 = 1.5;
     /// Frames rejected in a row before the second one was ever found: the first was not the object.
     pub(crate) const FALSE_START: usize = 3;

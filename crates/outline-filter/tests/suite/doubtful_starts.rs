@@ -54,6 +54,19 @@ fn a_frame_that_shows_the_whole_of_what_a_corner_was_seen_of_begins_the_map_anew
 }
 
 #[test]
+#[cfg(feature = "serde")]
+fn a_filter_saved_after_a_corner_goes_on_to_the_last_bit() {
+    let mut straight = MotionFilter::new(FilterSettings::default()).expect("settings");
+    let mut restored = straight.clone();
+    for frame in seen_in_part_at_first(0.04, 5).into_iter().take(8) {
+        let steps = [&mut straight, &mut restored].map(|filter| filter.step(frame.time, &frame.outline).ok());
+        assert_eq!(steps[0], steps[1]);
+        restored = MotionFilter::from_bytes(&restored.to_bytes().expect("memory")).expect("a saved state");
+    }
+    assert_eq!((straight.segment(), straight.to_bytes()), (1, restored.to_bytes()));
+}
+
+#[test]
 fn most_of_the_object_is_found_on_the_whole_and_poses_go_back_to_it() {
     for seed in 0..4 {
         let run = filtered(MotionModel::Rigid, &seen_in_part_at_first(0.8, seed));

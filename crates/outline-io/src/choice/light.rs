@@ -13,22 +13,26 @@ use crate::trace::TracedOutline;
 use crate::trace_settings::{Contours, Edges, TraceSettings};
 use crate::transfer::Transfer;
 
-/// What no turn and no way of a body changes, as logarithms of lengths: the root of its area, its longest and its shortest radius of gyration.
+/// Logarithms of lengths that stay the same however a body turns and travels: the root of its area, its longest and its shortest radius of gyration.
 type Sizes = [f64; 3];
 
 /// What was seen of one body, or of several that are alike.
 struct Body {
     /// The root of its area where it was seen first, in pixels.
     length: f64,
-    /// Its sizes in the pictures, by the grey values as they are and by the light of sRGB.
+    /// Its sizes, by the grey values as they are and by the light of sRGB.
     sizes: Vec<[Sizes; 2]>,
+    /// Pictures that it was seen in, and the last of them.
+    pictures: usize,
+    last: usize,
 }
 
-/// What grey values stand for, where the pictures tell: blurred by its motion, a body seems to grow and to change its shape with its speed where they
-/// are taken for something else. Where they do not tell, they are taken as they are.
+/// What grey values stand for, where the pictures tell it: a body that its motion blurs seems to change its size with its speed where they are taken for
+/// something else. Where the pictures do not tell it, grey values are taken as they are.
 pub(super) fn transfer_of(sample: &PictureSample, base: &PictureSettings, tracing: &Tracing) -> Transfer {
-    if sample.is_two_valued() || tracing.way.is_ring() || tracing.channel == Channel::Saturation {
-        return Transfer::Linear;
+    let has_light = !sample.is_two_valued() && !tracing.way.is_ring() && tracing.channel != Channel::Saturation;
+    if !has_light || base.trace.transfer != Transfer::Linear {
+        return base.trace.transfer;
     }
     let (settings, views) = Trial::whole(sample, base, tracing.channel).views(tracing);
     let seen_by = |transfer: Transfer| {
@@ -41,39 +45,52 @@ pub(super) fn transfer_of(sample: &PictureSample, base: &PictureSettings, tracin
         let srgb = scope.spawn(|| seen_by(Transfer::Srgb));
         (seen_by(Transfer::Linear), srgb.join().unwrap_or_else(|panic| resume_unwind(panic)))
     });
-    // One after the other they are the same objects, unless one of them has no outline.
-    let in_pictures = linear.iter().zip(&srgb).filter(|(linear, srgb)| linear.len() == srgb.len());
     let mut bodies: Vec<Body> = Vec::new();
-    for (of_linear, of_srgb) in in_pictures.flat_map(|(linear, srgb)| linear.iter().zip(srgb)) {
-        if of_linear.touches_border {
-            continue;
-        }
-        let sizes = [of_linear, of_srgb].map(sizes_of);
-        let is_same = |body: &&mut Body| {
-            let [first, _] = body.sizes[0];
-            first.iter().zip(&sizes[0]).all(|(a, b)| (a - b).abs() < tuning::ALIKE)
-        };
-        match bodies.iter_mut().find(is_same) {
-            Some(body) => body.sizes.push(sizes),
-            None => bodies.push(Body { length: of_linear.area.sqrt(), sizes: vec![sizes] }),
+    for (picture, (linear, srgb)) in linear.iter().zip(&srgb).enumerate() {
+        for (of_linear, of_srgb) in linear.iter().zip(srgb) {
+            // One after the other they are the same objects, unless one of them has no outline.
+            if of_linear.pixel_count == of_srgb.pixel_count && !of_linear.touches_border {
+                let sizes = [of_linear, of_srgb].map(sizes_of);
+                match bodies.iter_mut().find(|body| body.is_like(&sizes)) {
+                    Some(body) => body.add(sizes, picture),
+                    None => bodies.push(Body {
+                        length: of_linear.area.sqrt(),
+                        sizes: vec![sizes],
+                        pictures: 1,
+                        last: picture,
+                    }),
+                }
+            }
         }
     }
-    bodies.retain(|body| body.sizes.len() >= tuning::FEWEST);
+    bodies.retain(|body| body.pictures >= tuning::FEWEST);
     let [as_they_are, as_light] =
         [0, 1].map(|of| bodies.iter().flat_map(|body| body.deviations(of)).collect::<Vec<f64>>());
     let mut ordered = as_they_are.clone();
     ordered.sort_by(f64::total_cmp);
-    let Some(most) = ordered.get(ordered.len() * 9 / 10) else { return Transfer::Linear };
+    let Some(most) = ordered.get((tuning::USUAL * ordered.len() as f64) as usize) else { return Transfer::Linear };
     let spread = |deviations: &[f64]| {
         let squares = deviations.iter().map(|deviation| deviation.min(*most).powi(2));
         (squares.sum::<f64>() / deviations.len() as f64).sqrt()
     };
     let (of_linear, of_light) = (spread(&as_they_are), spread(&as_light));
-    let tells = of_linear > tuning::LEAST_SPREAD && of_light < tuning::LESS * of_linear;
-    if tells { Transfer::Srgb } else { Transfer::Linear }
+    let is_steadier = of_linear > tuning::LEAST_SPREAD && of_light < tuning::LESS * of_linear;
+    if is_steadier { Transfer::Srgb } else { Transfer::Linear }
 }
 
 impl Body {
+    /// Whether sizes may be those of this body: by what the grey values stand for they hardly change.
+    fn is_like(&self, sizes: &[Sizes; 2]) -> bool {
+        let is_alike = |(a, b): (&Sizes, &Sizes)| a.iter().zip(b).all(|(a, b)| (a - b).abs() < tuning::ALIKE);
+        self.sizes[0].iter().zip(sizes).any(is_alike)
+    }
+
+    fn add(&mut self, sizes: [Sizes; 2], picture: usize) {
+        self.sizes.push(sizes);
+        self.pictures += usize::from(picture != self.last);
+        self.last = picture;
+    }
+
     /// How far each of its sizes is from its median, by one of the transfer functions, in pixels.
     fn deviations(&self, of: usize) -> impl Iterator<Item = f64> {
         (0..3).flat_map(move |k| {

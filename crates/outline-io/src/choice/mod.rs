@@ -79,7 +79,7 @@ pub struct TracingChoice {
     beside: Option<TracingWarning>,
     /// What of the pictures is not looked at: the margins given, or else even bars at their sides.
     pub margins: Margins,
-    /// How grey values stand for light, by the edges that the best shows.
+    /// How grey values stand for light: what is given, and else what leaves the sizes of bodies the same that the best shows.
     pub transfer: Transfer,
 }
 
@@ -185,6 +185,13 @@ impl TracingChoice {
     #[must_use]
     pub fn is_convincing(&self) -> bool {
         self.best().is_some_and(|best| best.score >= TracingChoice::CONVINCING)
+    }
+
+    /// These settings with what was found of the pictures whatever the way: margins and transfer function. [`Tracing::settings`] puts a way into them.
+    #[must_use]
+    pub fn base(&self, settings: &PictureSettings) -> PictureSettings {
+        let trace = TraceSettings { margins: Some(self.margins), transfer: self.transfer, ..settings.trace };
+        PictureSettings { trace, ..settings.clone() }
     }
 
     /// What should be known of the best way.

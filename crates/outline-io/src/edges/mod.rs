@@ -16,8 +16,8 @@ use freeform_curve_fit::isoline::Crossing;
 use image::GrayImage;
 use nalgebra::{Point2, Vector2};
 
-use crate::compared::Compared;
 use crate::contrast::Contrast;
+use crate::tracing_input::GroundComparison;
 use crate::transfer::Transfer;
 pub use edge_profile::{EdgeProfile, SoughtEdges};
 
@@ -75,12 +75,12 @@ pub struct EdgeFit {
     /// rounding of grey values, and light that changes on one side of the edge; of edges that are [those of pixels](Self::is_on_pixels) their
     /// rounding too.
     pub systematic: f64,
-    /// Median height of the step, in grey values; positive. Where these do not stand for light in proportion, it is the light, of which the grey
-    /// values in the middle of the edges are the scale.
+    /// Median height of the step, in grey values; positive. Where edges are looked for in light, it is a height of the light, divided by how much
+    /// light a grey value more is in the middle of the edges.
     pub contrast: f64,
     /// Width of the edges: the standard deviation of their Gaussian blur, in pixels.
     pub blur: f64,
-    /// Standard deviation of the grey values about the fitted steps, in grey values.
+    /// Standard deviation of the grey values about the fitted steps, in the unit of the contrast.
     pub noise: f64,
     /// Share of the points that have an edge of their own.
     pub clear_share: f64,
@@ -110,7 +110,7 @@ pub(crate) struct EdgeSource<'a> {
     /// In which objects are looked for: a picture, or its difference from what it is compared with.
     pub(crate) picture: &'a GrayImage,
     /// Of what it is the difference, if of anything.
-    pub(crate) compared: Option<Compared<'a>>,
+    pub(crate) comparison: Option<GroundComparison<'a>>,
     pub(crate) contrast: Contrast,
     pub(crate) transfer: Transfer,
     /// Standard deviation of the smoothing along the contour, in points; 0 for none.

@@ -25,11 +25,11 @@ pub(super) struct Sampler<'a> {
 impl<'a> Sampler<'a> {
     /// Of what is looked at along an outline through these points.
     pub(super) fn new(source: &EdgeSource<'a>, points: &[Point2<f64>]) -> Self {
-        let &EdgeSource { picture, contrast, transfer, compared, along: _ } = source;
-        let (picture, ground) = match compared {
+        let &EdgeSource { picture, contrast, transfer, comparison, along: _ } = source;
+        let (picture, ground) = match comparison {
             // Of grey values as they are the difference is known.
-            Some(compared) if transfer != Transfer::Linear => {
-                (compared.picture, Some((compared.ground, compared.difference)))
+            Some(comparison) if transfer != Transfer::Linear => {
+                (comparison.picture, Some((comparison.ground, comparison.difference)))
             }
             _ => (picture, None),
         };
@@ -69,8 +69,16 @@ impl<'a> Sampler<'a> {
             let side_by_side = offsets.side_by_side();
             values.resize(SIDE_BY_SIDE * side_by_side.len(), 0.0);
             let (blocks, _) = values.as_chunks_mut::<SIDE_BY_SIDE>();
-            for (block, offsets) in blocks.iter_mut().zip(side_by_side) {
-                *block = self.within(place, along, offsets);
+            let (stride, pixels) = (self.picture.width() as usize, self.picture.as_raw().as_slice());
+            let plain = |from: usize| {
+                let around = &pixels[from..from + stride + 2];
+                [0, 1, stride, stride + 1].map(|index| self.signals[usize::from(around[index])])
+            };
+            let differences = |from: usize| [0, 1, stride, stride + 1].map(|index| self.signal(from + index));
+            let blocks = blocks.iter_mut().zip(side_by_side);
+            match self.ground {
+                None => blocks.for_each(|(block, offsets)| *block = self.within(place, along, offsets, plain)),
+                Some(_) => blocks.for_each(|(block, offsets)| *block = self.within(place, along, offsets, differences)),
             }
             values.truncate(offsets.count());
         } else {
@@ -81,10 +89,15 @@ impl<'a> Sampler<'a> {
     }
 
     /// What [`interpolated`] says of places within the picture, without its care for the edge of the picture: places first, so that they are worked
-    /// out side by side.
+    /// out side by side. `around` gives what a pixel shows, the one on its right, and the two below these.
     #[inline(always)]
-    fn within(&self, place: Point2<f64>, along: Vector2<f64>, offsets: &[f64; SIDE_BY_SIDE]) -> [f64; SIDE_BY_SIDE] {
-        let (stride, pixels) = (self.picture.width() as usize, self.picture.as_raw().as_slice());
+    fn within(
+        &self,
+        place: Point2<f64>,
+        along: Vector2<f64>,
+        offsets: &[f64; SIDE_BY_SIDE],
+        around: impl Fn(usize) -> [f64; 4],
+    ) -> [f64; SIDE_BY_SIDE] {
         let columns = f64::from(self.picture.width());
         let [mut across, mut down] = [[0.0; SIDE_BY_SIDE]; 2];
         let mut at = [0; SIDE_BY_SIDE];
@@ -95,14 +108,9 @@ impl<'a> Sampler<'a> {
             at[k] = (row * columns + column + ROUNDS).to_bits() & LAST_BITS;
         }
         std::array::from_fn(|k| {
-            let from = at[k] as usize;
-            let around = &pixels[from..from + stride + 2];
-            let pixel = |index: usize| match self.ground {
-                None => self.signals[usize::from(around[index])],
-                Some(_) => self.signal(from + index),
-            };
-            let upper = pixel(0) + across[k] * (pixel(1) - pixel(0));
-            let lower = pixel(stride) + across[k] * (pixel(stride + 1) - pixel(stride));
+            let [left, right, lower_left, lower_right] = around(at[k] as usize);
+            let upper = left + across[k] * (right - left);
+            let lower = lower_left + across[k] * (lower_right - lower_left);
             upper + down[k] * (lower - upper)
         })
     }
@@ -124,7 +132,7 @@ fn whole_part(number: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compared::Compared;
+    use crate::tracing_input::GroundComparison;
 
     #[test]
     fn whole_parts_are_those_of_the_library() {
@@ -137,22 +145,31 @@ mod tests {
     fn profiles_within_the_picture_and_beyond_its_edge_are_those_of_the_interpolation_to_the_last_bit() {
         let picture = GrayImage::from_fn(37, 23, |x, y| image::Luma([(x * x * 7 + y * 31 + x * y * 5) as u8]));
         let ground = GrayImage::from_fn(37, 23, |x, y| image::Luma([(3 * x + y) as u8]));
-        let either = Compared { picture: &picture, ground: &ground, difference: Difference::Either };
-        for (contrast, transfer, compared) in [
+        let either = GroundComparison { picture: &picture, ground: &ground, difference: Difference::Either };
+        for (contrast, transfer, comparison) in [
             (Contrast::LightOnDark, Transfer::Linear, None),
             (Contrast::DarkOnLight, Transfer::Linear, None),
             (Contrast::DarkOnLight, Transfer::Srgb, None),
             (Contrast::LightOnDark, Transfer::Srgb, Some(either)),
         ] {
-            let source = EdgeSource { picture: &picture, compared, contrast, transfer, along: 0.0 };
+            let source = EdgeSource { picture: &picture, comparison, contrast, transfer, along: 0.0 };
             let sampler = Sampler::new(&source, &[Point2::new(4.0, 5.0)]);
+            let slope = transfer.slope(f64::from(picture.get_pixel(4, 5).0[0]));
+            let expected_signal = |pixel: usize| {
+                let light = |picture: &GrayImage| transfer.light()[usize::from(picture.as_raw()[pixel])];
+                match (comparison, contrast) {
+                    (Some(_), _) => (light(&picture) / slope - light(&ground) / slope).abs(),
+                    (None, Contrast::LightOnDark) => light(&picture) / slope,
+                    (None, Contrast::DarkOnLight) => (255.0 - light(&picture)) / slope,
+                }
+            };
             let mut values = Vec::new();
             for k in 0..400_u32 {
                 let turn = 0.37 * f64::from(k);
                 let place = Point2::new(18.0 + 16.0 * (0.7 * turn).cos(), 11.0 + 11.5 * (1.3 * turn).sin());
                 let (along, offsets) = (Vector2::new(turn.cos(), turn.sin()), Offsets::within(3 + k as usize % 7));
                 sampler.profile(place, along, &offsets, &mut values);
-                let value = |s| interpolated((37, 23), place + s * along, |pixel| sampler.signal(pixel));
+                let value = |s| interpolated((37, 23), place + s * along, expected_signal);
                 let expected: Vec<f64> = offsets.iter().map(value).collect();
                 assert_eq!(values, expected, "{place} {along}");
             }
@@ -160,11 +177,11 @@ mod tests {
     }
 
     #[test]
-    fn what_is_light_is_compared_and_dark_objects_are_the_lighter_ones() {
+    fn what_is_light_is_comparison_and_dark_objects_are_the_lighter_ones() {
         let picture = GrayImage::from_fn(4, 4, |x, _| image::Luma([50 * x as u8]));
         let ground = GrayImage::from_pixel(4, 4, image::Luma([100]));
-        let sampler = |contrast, transfer, compared| {
-            let source = EdgeSource { picture: &picture, compared, contrast, transfer, along: 0.0 };
+        let sampler = |contrast, transfer, comparison| {
+            let source = EdgeSource { picture: &picture, comparison, contrast, transfer, along: 0.0 };
             Sampler::new(&source, &[Point2::new(2.0, 1.0)])
         };
         let dark = sampler(Contrast::DarkOnLight, Transfer::Linear, None);
@@ -174,9 +191,13 @@ mod tests {
         let step = dark.signal(1) - dark.signal(3);
         assert!((step - (light[150] - light[50]) / Transfer::Srgb.slope(100.0)).abs() < 1e-9, "{step}");
         for (difference, sign) in [(Difference::Either, 1.0), (Difference::Lighter, 1.0), (Difference::Darker, 0.0)] {
-            let compared = Compared { picture: &picture, ground: &ground, difference };
-            let of = sampler(Contrast::LightOnDark, Transfer::Srgb, Some(compared)).signal(3);
-            assert!((of - sign * (light[150] - light[100]) / Transfer::Srgb.slope(100.0)).abs() < 1e-9, "{of}");
+            let comparison = GroundComparison { picture: &picture, ground: &ground, difference };
+            let sampler = sampler(Contrast::LightOnDark, Transfer::Srgb, Some(comparison));
+            let [lighter, darker] = [sampler.signal(3), sampler.signal(1)];
+            let slope = Transfer::Srgb.slope(100.0);
+            assert!((lighter - sign * (light[150] - light[100]) / slope).abs() < 1e-9, "{lighter}");
+            let of_darker = if difference == Difference::Lighter { 0.0 } else { (light[100] - light[50]) / slope };
+            assert!((darker - of_darker).abs() < 1e-9, "{darker}");
         }
     }
 }

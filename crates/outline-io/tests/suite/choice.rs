@@ -3,13 +3,13 @@ use std::sync::Arc;
 
 use freeform_outline_io::{
     Channel, GrayImage, Margins, PictureError, PictureFrame, PictureSample, PictureSettings, Selection, TraceError,
-    TraceSettings, TracedOutline, TracingChoice, TracingEvidence, TracingWarning, TracingWay, Transfer, choose_tracing,
+    TraceSettings, TracedOutline, TracingChoice, TracingEvidence, TracingWarning, TracingWay, choose_tracing,
     trace_objects,
 };
 use image::Luma;
 
 /// Noise of a few grey values, the same whenever it is asked for.
-fn noise(x: u32, y: u32, frame: u32) -> f64 {
+pub(crate) fn noise(x: u32, y: u32, frame: u32) -> f64 {
     let mut mixed = x.wrapping_mul(0x9e37_79b1) ^ y.wrapping_mul(0x85eb_ca77) ^ frame.wrapping_mul(0xc2b2_ae3d);
     mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x2c1b_3c6d);
     f64::from((mixed ^ (mixed >> 13)) % 7) - 3.0
@@ -37,7 +37,7 @@ fn chosen(pictures: &[GrayImage]) -> TracingEvidence {
     choice(pictures).best().expect("a way").clone()
 }
 
-fn choice(pictures: &[GrayImage]) -> TracingChoice {
+pub(crate) fn choice(pictures: &[GrayImage]) -> TracingChoice {
     let sample = PictureSample::read(&[Channel::Luminance], |_| {
         let frame = |(frame, picture): (u64, GrayImage)| {
             let time = frame as f64 / 30.0;
@@ -377,37 +377,4 @@ fn specks_at_random_places_do_not_go_straight_on_so_often_that_they_are_followed
         followed += u32::from(matches!(best.tracing.way, TracingWay::Median(_)) && best.score < 0.005);
     }
     assert_eq!(followed, 0);
-}
-
-/// A bar that speeds up and turns slowly, blurred by the way that it goes while the shutter is open; grey values are the root of this order of the
-/// light.
-fn bar_that_speeds_up(gamma: f64, exposure: f64) -> Vec<GrayImage> {
-    let light = |grey: f64| (grey / 255.0).powf(gamma);
-    let picture_at = |frame: u32| {
-        let time = f64::from(frame);
-        let instants = (1.0 + exposure * (1.0 + 0.8 * time)).ceil() as u32;
-        GrayImage::from_fn(320, 240, |x, y| {
-            let share = (0..instants).map(|k| {
-                let time = time + exposure * ((f64::from(k) + 0.5) / f64::from(instants) - 0.5);
-                let (middle, turn) = ([50.0 + time + 0.4 * time * time, 120.0], 0.04 * time);
-                let (dx, dy) = (f64::from(x) + 0.5 - middle[0], f64::from(y) + 0.5 - middle[1]);
-                let (along, across) =
-                    (dx * f64::cos(turn) + dy * f64::sin(turn), dy * f64::cos(turn) - dx * f64::sin(turn));
-                let outside = (along.abs() - 34.0).max(across.abs() - 16.0);
-                (0.5 - 0.5 * outside).clamp(0.0, 1.0)
-            });
-            let share = share.sum::<f64>() / f64::from(instants);
-            let grey = 255.0 * (light(40.0) + share * (light(190.0) - light(40.0))).powf(gamma.recip());
-            Luma([(grey + noise(x, y, frame)).round().clamp(0.0, 255.0) as u8])
-        })
-    };
-    (0..20).map(picture_at).collect()
-}
-
-#[test]
-fn what_grey_values_stand_for_is_told_by_the_size_of_a_body_that_its_motion_blurs() {
-    assert_eq!(choice(&bar_that_speeds_up(2.2, 0.6)).transfer, Transfer::Srgb);
-    assert_eq!(choice(&bar_that_speeds_up(1.0, 0.6)).transfer, Transfer::Linear);
-    // It is not told where nothing is blurred.
-    assert_eq!(choice(&bar_that_speeds_up(2.2, 0.0)).transfer, Transfer::Linear);
 }

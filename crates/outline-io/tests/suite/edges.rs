@@ -1,8 +1,5 @@
 //! Outlines on the edges themselves: bias and scatter of straight edges against the bound, and what may not move them.
-use freeform_outline_io::{
-    Background, Clipping, Contrast, Difference, EdgeFit, GrayImage, PictureFrame, PictureOutlines, PictureSettings,
-    Threshold, TraceSettings, TracedOutline, Transfer, trace_mask,
-};
+use freeform_outline_io::{Clipping, EdgeFit, GrayImage, Threshold, TraceSettings, TracedOutline, trace_mask};
 use image::Luma;
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
@@ -66,7 +63,7 @@ impl Step {
 }
 
 /// The share of a normal distribution beyond `z`.
-fn tail(z: f64) -> f64 {
+pub(crate) fn tail(z: f64) -> f64 {
     let x = z.abs() / std::f64::consts::SQRT_2;
     let t = 1.0 / (1.0 + 0.5 * x);
     let series = [
@@ -348,75 +345,5 @@ fn what_the_grid_of_pixels_and_rounding_do_to_edges_along_the_rows_is_stated() {
                 assert!(off < 1.3 * stated, "{off} {stated}");
             }
         }
-    }
-}
-
-/// The grey value of a light from 0 to 1, by the transfer function of sRGB.
-fn srgb(light: f64) -> u8 {
-    let value = if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 };
-    (255.0 * value).round() as u8
-}
-
-/// A disc of radius 40 that has moved by `way` pixels to the right while the shutter was open, in a picture of 160 by 120: the mean of its light, from
-/// `ground` to `body`, before it is told as grey values by the transfer function.
-fn moved_disc(way: f64, [ground, body]: [f64; 2]) -> GrayImage {
-    let instants = 4 * way.ceil() as u32 + 1;
-    GrayImage::from_fn(160, 120, |column, row| {
-        let share = (0..instants).map(|k| {
-            let shift = way * ((f64::from(k) + 0.5) / f64::from(instants) - 0.5);
-            let distance = (f64::from(column) + 0.5 - 80.3 - shift).hypot(f64::from(row) + 0.5 - 60.1) - 40.0;
-            tail(distance / 0.8)
-        });
-        let share = share.sum::<f64>() / f64::from(instants);
-        Luma([srgb(ground + share * (body - ground))])
-    })
-}
-
-#[test]
-fn a_body_that_its_motion_blurs_keeps_its_size_where_its_light_is_looked_at() {
-    for (contrast, light) in [(Contrast::LightOnDark, [0.05, 0.6]), (Contrast::DarkOnLight, [0.7, 0.02])] {
-        // How much wider than high it is seen, against the grey values as they are.
-        let grown = |way: f64, transfer: Transfer| {
-            let settings = TraceSettings { contrast, transfer, y_up: false, ..TraceSettings::default() };
-            let traced = trace_mask(&moved_disc(way, light), &settings).expect("the disc");
-            let [left, right] =
-                traced.outline.points().fold([f64::INFINITY, 0.0], |[a, b], p| [a.min(p.x), f64::max(b, p.x)]);
-            right - left - 80.0
-        };
-        let sign = if contrast == Contrast::LightOnDark { 1.0 } else { -1.0 };
-        for way in [6.0, 12.0] {
-            let [linear, srgb] =
-                [Transfer::Linear, Transfer::Srgb].map(|transfer| grown(way, transfer) - grown(0.0, transfer));
-            assert!(sign * linear > 0.12 * way, "{contrast:?} {way}: {linear}");
-            assert!(srgb.abs() < 0.25 * linear.abs(), "{contrast:?} {way}: {srgb} {linear}");
-        }
-    }
-}
-
-#[test]
-fn light_is_compared_with_that_of_a_background_and_not_grey_values() {
-    let light = [0.05, 0.6];
-    let ground = GrayImage::from_pixel(160, 120, Luma([srgb(light[0])]));
-    let outline_of = |background: Option<Background>, difference: Difference| {
-        let frame =
-            PictureFrame { frame: 0, time: 0.0, file: "memory".to_owned(), picture: moved_disc(9.0, light).into() };
-        let trace = TraceSettings { transfer: Transfer::Srgb, ..TraceSettings::default() };
-        let settings = PictureSettings { trace, background, difference, ..PictureSettings::default() };
-        let mut traced = PictureOutlines::new(std::iter::once(Ok(frame)), settings).expect("settings");
-        let objects = traced.next().expect("a picture").expect("read").objects.expect("the disc");
-        objects[0].1.outline.points().copied().collect::<Vec<_>>()
-    };
-    let plain = outline_of(None, Difference::Either);
-    for difference in [Difference::Either, Difference::Lighter] {
-        let compared = outline_of(Some(Background::Picture(ground.clone().into())), difference);
-        let nearest = |p: &nalgebra::Point2<f64>| plain.iter().map(|q| (q - p).norm()).fold(f64::INFINITY, f64::min);
-        let farthest = compared.iter().map(nearest).fold(0.0, f64::max);
-        // Points lie a pixel apart; along the outline theirs are others.
-        assert!(farthest < 0.6, "{farthest}");
-        let width = |points: &[nalgebra::Point2<f64>]| {
-            let [low, high] = points.iter().fold([f64::INFINITY, 0.0], |[a, b], p| [a.min(p.x), f64::max(b, p.x)]);
-            high - low
-        };
-        assert!((width(&compared) - width(&plain)).abs() < 0.05, "{} {}", width(&compared), width(&plain));
     }
 }

@@ -12,6 +12,7 @@ mod edge_profiles;
 mod edges;
 mod identities;
 mod labels;
+mod light;
 mod lists;
 #[cfg(feature = "parquet")]
 mod origin_warnings;

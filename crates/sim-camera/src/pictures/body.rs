@@ -50,6 +50,13 @@ impl Path {
         self.omega + self.alpha * time
     }
 
+    /// Largest of the speeds at two times, of the middle in pixels per second, and of turn and tumble in rad/s: between these times none is larger.
+    fn fastest(&self, times: [f64; 2]) -> [f64; 2] {
+        let speeds = times.map(|time| [self.velocity(time).norm(), self.omega(time).abs() + self.tumble.abs()]);
+        let [first, last] = speeds;
+        [first[0].max(last[0]), first[1].max(last[1])]
+    }
+
     fn linear(&self, time: f64) -> Matrix2<f64> {
         let turn = Rotation2::new(-self.angle(time)).into_inner();
         turn * Matrix2::new((self.tumble * time).cos(), 0.0, 0.0, 1.0)
@@ -65,6 +72,13 @@ impl Body {
             Point2::new(p.x, height - p.y)
         };
         self.contours.iter().map(|contour| contour.iter().map(place).collect()).collect()
+    }
+
+    /// A speed that no point of it is beyond between two times, in pixels per second.
+    pub(super) fn fastest(&self, times: [f64; 2]) -> f64 {
+        let reach = self.contours.iter().flatten().map(|p| p.coords.norm()).fold(0.0, f64::max);
+        let [travel, turn] = self.path.fastest(times);
+        travel + turn * reach
     }
 
     /// A hole with its middle at a place of the body.

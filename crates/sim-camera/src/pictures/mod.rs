@@ -105,7 +105,7 @@ impl SimulatedPictures {
             ("noise of the pictures", noise, "0 to 255", [0.0, 255.0]),
             ("shadow", shadow, "0 to 1", [0.0, 1.0]),
             ("line", line, "0 to 100 pixels", [0.0, 100.0]),
-            ("exposure", exposure, "0 to 3600 s", [0.0, 3600.0]),
+            ("exposure", exposure, "0 to the time between two pictures", [0.0, self.frames_per_second.recip()]),
             ("gamma", gamma, "0.1 to 10", [0.1, 10.0]),
         ] {
             if !(least..=most).contains(&value) {

@@ -11,9 +11,12 @@ const SHADOW_SHIFT: [f64; 2] = [9.0, -6.0];
 /// Standard deviation of the edge of a shadow beyond the blur of the picture, in pixels.
 const SHADOW_BLUR: f64 = 2.5;
 
+/// Most instants that an exposure is a mean of: a way of as many pixels, which crosses most pictures.
+const MOST_INSTANTS: f64 = 512.0;
+
 /// What a camera makes of a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rendering {
     /// Columns and rows.
     pub size: [usize; 2],
@@ -31,10 +34,19 @@ pub struct Rendering {
     pub shadow: f64,
     /// Width of a dark line around a body that has the grey value of the ground, in pixels; 0: bodies are filled.
     pub line: f64,
-    /// How long the shutter is open, in seconds, half of it before the time of the picture: what moves is blurred. 0: an instant.
+    /// How long the shutter is open, in seconds, half of it before the time of the picture: what moves is blurred. 0, an instant, to the time between two
+    /// pictures.
+    #[cfg_attr(feature = "serde", serde(default))]
     pub exposure: f64,
-    /// Grey values are the root of this order of the light, which blurred edges are a mean of; 1: in proportion to it, 2.2: as those of most cameras.
+    /// The grey value of a light from 0 to 255 is `255 (light / 255)^(1 / gamma)`, 0.1 to 10: 1 is in proportion to light, of which blurred edges are a
+    /// mean, and 2.2 as those of most cameras are.
+    #[cfg_attr(feature = "serde", serde(default = "proportional"))]
     pub gamma: f64,
+}
+
+#[cfg(feature = "serde")]
+fn proportional() -> f64 {
+    1.0
 }
 
 impl Default for Rendering {
@@ -52,17 +64,20 @@ impl Rendering {
     pub(super) fn picture(&self, bodies: &[Body], time: f64, noise: &mut impl Rng) -> Vec<u8> {
         let mut light = self.exposed(bodies, time);
         let width = self.size[0];
-        blur(&mut light, width, self.blur);
         let step = self.shading * self.contrast.abs() / width as f64;
-        let shades = (0..width).map(|column| step * (column as f64 + 0.5)).cycle();
-        let noisy = |(light, shade): (f64, f64)| {
+        for row in light.chunks_exact_mut(width) {
+            let shaded = |column: usize, light: f64| self.light_of(self.grey_of(light) - step * (column as f64 + 0.5));
+            row.iter_mut().enumerate().for_each(|(column, light)| *light = shaded(column, *light));
+        }
+        blur(&mut light, width, self.blur);
+        let noisy = |light: f64| {
             let error: f64 = StandardNormal.sample(noise);
-            (self.grey_of(light) - shade + self.noise * error).round().clamp(0.0, 255.0) as u8
+            (self.grey_of(light) + self.noise * error).round().clamp(0.0, 255.0) as u8
         };
-        light.into_iter().zip(shades).map(noisy).collect()
+        light.into_iter().map(noisy).collect()
     }
 
-    /// The grey value of a light, both 0 to 255.
+    /// The grey value of a light; both are 0 to 255 in a picture.
     fn grey_of(&self, light: f64) -> f64 {
         if self.gamma == 1.0 { light } else { 255.0 * (light.max(0.0) / 255.0).powf(self.gamma.recip()) }
     }
@@ -74,8 +89,7 @@ impl Rendering {
 
     /// The mean of the light while the shutter is open.
     fn exposed(&self, bodies: &[Body], time: f64) -> Vec<f64> {
-        let ends = [-0.5, 0.5].map(|share| time + share * self.exposure);
-        let count = instants(bodies, ends);
+        let count = instants(bodies, time, self.exposure);
         let at = |k: usize| self.light(bodies, time + ((k as f64 + 0.5) / count as f64 - 0.5) * self.exposure);
         let mut sum = at(0);
         for k in 1..count {
@@ -116,14 +130,11 @@ impl Rendering {
     }
 }
 
-/// How many instants stand for the time between two: no point goes farther than a pixel from one to the next, but that there are no more than 64.
-fn instants(bodies: &[Body], ends: [f64; 2]) -> usize {
-    let way = |body: &Body| {
-        let [first, last] = ends.map(|time| body.in_picture(time, Vector2::zeros(), 0.0));
-        let ways = first.into_iter().flatten().zip(last.into_iter().flatten()).map(|(p, q)| (q - p).norm());
-        ways.fold(0.0, f64::max)
-    };
-    bodies.iter().map(way).fold(1.0, f64::max).ceil().min(64.0) as usize
+/// How many instants stand for the time that a shutter is open: no point goes farther than a pixel from one to the next, unless there are as many as there
+/// may be.
+fn instants(bodies: &[Body], time: f64, exposure: f64) -> usize {
+    let way = |body: &Body| exposure * body.fastest([time - 0.5 * exposure, time + 0.5 * exposure]);
+    bodies.iter().map(way).fold(1.0, f64::max).ceil().min(MOST_INSTANTS) as usize
 }
 
 /// A contour moved inwards by a distance; that of a hole, which runs the other way round, outwards.

@@ -6,7 +6,7 @@ use crate::picture_error::TraceError;
 
 /// A picture and what it is compared with.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Compared<'a> {
+pub(crate) struct GroundComparison<'a> {
     pub(crate) picture: &'a GrayImage,
     pub(crate) ground: &'a GrayImage,
     pub(crate) difference: Difference,
@@ -14,14 +14,14 @@ pub(crate) struct Compared<'a> {
 
 /// What objects are looked for in.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Looked<'a> {
+pub(crate) struct TracingInput<'a> {
     /// A picture, or its difference from what it is compared with.
     pub(crate) picture: &'a GrayImage,
     /// Of what it is the difference, if of anything.
-    pub(crate) compared: Option<Compared<'a>>,
+    pub(crate) comparison: Option<GroundComparison<'a>>,
 }
 
-impl Compared<'_> {
+impl GroundComparison<'_> {
     /// How far each pixel differs, in grey values.
     ///
     /// # Errors
@@ -36,9 +36,9 @@ impl Compared<'_> {
     }
 }
 
-impl<'a> Looked<'a> {
+impl<'a> TracingInput<'a> {
     /// A picture as it is.
-    pub(crate) fn at(picture: &'a GrayImage) -> Self {
-        Self { picture, compared: None }
+    pub(crate) fn plain(picture: &'a GrayImage) -> Self {
+        Self { picture, comparison: None }
     }
 }
