@@ -151,10 +151,10 @@ pub(crate) fn takes_next(argument: &str) -> bool {
     })
 }
 
-/// With the command that has an option which another does not know, in place of how to pass its name as a value.
+/// With the command that has an option which another does not know, in place of how to pass its name as a value, and of an option of a similar name.
 fn with_tip(error: &clap::Error, message: String) -> String {
     let Some(ContextValue::String(argument)) = error.get(ContextKind::InvalidArg) else { return message };
-    if error.kind() != ErrorKind::UnknownArgument || message.contains("a similar argument") {
+    if error.kind() != ErrorKind::UnknownArgument {
         return message;
     }
     let definition = definition();

@@ -79,7 +79,7 @@ pub struct TracingChoice {
     beside: Option<TracingWarning>,
     /// What of the pictures is not looked at: the margins given, or else even bars at their sides.
     pub margins: Margins,
-    /// How grey values stand for light: what is given, and else what leaves the sizes of bodies the same that the best shows.
+    /// How grey values stand for light: what is given, and else what leaves the sizes of bodies the same that the best shows, and their edges even.
     pub transfer: Transfer,
 }
 

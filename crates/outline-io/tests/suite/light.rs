@@ -110,16 +110,22 @@ fn points_of_edges_in_light_lie_off_by_as_much_as_they_state() {
 
 /// A bar that speeds up and turns slowly, blurred by the way that it goes while the shutter is open for a share of the time between two pictures, of these
 /// grey values on ground of others. They are those of the light to the power of `1 / gamma`.
-fn bar_that_speeds_up(gamma: f64, exposure: f64, [ground, bar]: [f64; 2]) -> Vec<GrayImage> {
+fn bar_that_speeds_up(gamma: f64, exposure: f64, greys: [f64; 2]) -> Vec<GrayImage> {
+    moving_bar(gamma, exposure, greys, |time| (50.0 + time + 0.4 * time * time, 0.04 * time))
+}
+
+/// A bar whose place and turn are those of a way, by the number of the picture.
+fn moving_bar(gamma: f64, exposure: f64, [ground, bar]: [f64; 2], way: impl Fn(f64) -> (f64, f64)) -> Vec<GrayImage> {
     let light = |grey: f64| (grey / 255.0).powf(gamma);
     let picture_at = |frame: u32| {
         let time = f64::from(frame);
-        let instants = (1.0 + exposure * (1.0 + 0.8 * time)).ceil() as u32;
+        let fastest = (way(time + 0.5).0 - way(time - 0.5).0).abs();
+        let instants = (1.0 + exposure * fastest).ceil() as u32;
         GrayImage::from_fn(320, 240, |x, y| {
             let share = (0..instants).map(|k| {
                 let time = time + exposure * ((f64::from(k) + 0.5) / f64::from(instants) - 0.5);
-                let (middle, turn) = ([50.0 + time + 0.4 * time * time, 120.0], 0.04 * time);
-                let (dx, dy) = (f64::from(x) + 0.5 - middle[0], f64::from(y) + 0.5 - middle[1]);
+                let (middle, turn) = way(time);
+                let (dx, dy) = (f64::from(x) + 0.5 - middle, f64::from(y) + 0.5 - 120.0);
                 let (along, across) =
                     (dx * f64::cos(turn) + dy * f64::sin(turn), dy * f64::cos(turn) - dx * f64::sin(turn));
                 let outside = (along.abs() - 34.0).max(across.abs() - 16.0);
@@ -143,6 +149,15 @@ fn what_grey_values_stand_for_is_told_by_the_size_of_a_body_that_its_motion_blur
         }
         // It is not told where nothing is blurred.
         assert_eq!(choice(&bar_that_speeds_up(2.2, 0.0, greys)).transfer, Transfer::Linear);
+    }
+}
+
+#[test]
+fn at_a_constant_speed_wide_edges_tell_what_grey_values_stand_for() {
+    for greys in [[40.0, 190.0], [210.0, 60.0]] {
+        let along = |time: f64| (60.0 + 9.0 * time, 0.0);
+        let told = [2.2, 1.0].map(|gamma| choice(&moving_bar(gamma, 0.6, greys, along)).transfer);
+        assert_eq!(told, [Transfer::Srgb, Transfer::Linear], "{greys:?}");
     }
 }
 
