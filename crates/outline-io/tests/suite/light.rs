@@ -155,8 +155,8 @@ fn what_grey_values_stand_for_is_told_by_the_size_of_a_body_that_its_motion_blur
 #[test]
 fn at_a_constant_speed_wide_edges_tell_what_grey_values_stand_for() {
     for greys in [[40.0, 190.0], [210.0, 60.0]] {
-        let along = |time: f64| (60.0 + 9.0 * time, 0.0);
-        let told = [2.2, 1.0].map(|gamma| choice(&moving_bar(gamma, 0.6, greys, along)).transfer);
+        let along = |time: f64| (60.0 + 9.0 * time, 0.7);
+        let told = [2.2, 1.0].map(|gamma| choice(&moving_bar(gamma, 0.8, greys, along)).transfer);
         assert_eq!(told, [Transfer::Srgb, Transfer::Linear], "{greys:?}");
     }
 }
