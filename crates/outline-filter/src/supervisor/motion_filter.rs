@@ -191,6 +191,7 @@ impl MotionFilter {
         self.lose_if_turn_is_unknown(time);
         self.clock.last_frame = time;
         let was_changing = self.history.is_changing();
+        let is_searched = self.may_search();
         let outcome = match self.phase {
             _ if !self.shows_enough(outline) => None,
             Phase::Tracking => self.follow_or_lose(time, outline),
@@ -198,8 +199,7 @@ impl MotionFilter {
         };
         self.search_memory.budget.add_frame(self.phase == Phase::Tracking);
         let mut rejection = outcome.map_or(Some(Rejection::NotFound), |outcome| outcome.verdict.err());
-        let was_sought = outcome.is_some();
-        if was_sought && rejection.is_some() && self.begin_with_more(time, outline) {
+        if is_searched && rejection.is_some() && self.begin_with_more(time, outline) {
             return (None, None);
         }
         let is_found_elsewhere = rejection.is_none() && self.phase == Phase::Acquiring;
