@@ -194,11 +194,15 @@ impl Outline {
     /// ```
     #[must_use]
     pub fn length(&self) -> f64 {
-        let of_piece = |piece: Piece<'_>| {
-            let open = sides(piece.points).take(piece.points.len() - usize::from(!piece.closed));
-            open.map(|(_, side)| side.norm()).sum::<f64>()
-        };
-        self.pieces().map(of_piece).sum()
+        match self {
+            Self::Closed(outline) => outline.length(),
+            Self::Open(outline) => outline
+                .arcs()
+                .iter()
+                .flat_map(|arc| arc.points().windows(2))
+                .map(|side| (side[1] - side[0]).norm())
+                .sum(),
+        }
     }
 
     /// A closed outline from its points; see [`ClosedOutline::new`].

@@ -106,7 +106,7 @@ pub(crate) type TracedObjects = Result<Vec<TracedOutline>, TraceError>;
 #[derive(Debug, Clone)]
 pub(crate) struct View {
     pub(crate) picture: Arc<GrayImage>,
-    /// What it is compared with, if with anything but its own surface.
+    /// What it is compared with, if with anything; of its own surface only where that is known.
     pub(crate) ground: Option<Arc<GrayImage>>,
 }
 
@@ -130,9 +130,10 @@ impl View {
     pub(crate) fn traced(&self, settings: &PictureSettings, limit: usize) -> TracedObjects {
         let (margins, rows) = (settings.trace.margins.unwrap_or_default(), self.picture.height());
         let picture = margins.within(&self.picture)?;
-        let ground = match settings.background {
-            Some(Background::Surface) => Some(Cow::Owned(ground_surface(&picture))),
-            _ => self.ground.as_deref().map(|ground| margins.within(ground)).transpose()?,
+        let ground = match (&self.ground, &settings.background) {
+            (Some(ground), _) => Some(margins.within(ground)?),
+            (None, Some(Background::Surface)) => Some(Cow::Owned(ground_surface(&picture))),
+            _ => None,
         };
         let Some(ground) = ground else {
             return trace_within(TracingInput::plain(&picture), rows, &settings.trace, limit);

@@ -1,4 +1,5 @@
 //! How grey values stand for light.
+use std::sync::LazyLock;
 
 /// How grey values stand for light. An edge that is blurred by the lens, by pixels or by motion while the shutter is open is a mean of light: where
 /// grey values are not in proportion to light, the middle between those of both sides is not the middle of the edge, and lies the farther from it the
@@ -17,10 +18,10 @@ pub enum Transfer {
 impl Transfer {
     /// The light that each grey value stands for, 0 to 255.
     pub(crate) fn light(self) -> [f64; 256] {
-        std::array::from_fn(|value| match (self, value as f64) {
-            (Self::Linear, value) => value,
-            (Self::Srgb, value) => 255.0 * of_srgb(value / 255.0),
-        })
+        match self {
+            Self::Linear => std::array::from_fn(|value| value as f64),
+            Self::Srgb => *LIGHT_OF_SRGB,
+        }
     }
 
     /// How much the light changes with the grey value, at one; of [`Linear`](Self::Linear) 1.
@@ -31,6 +32,10 @@ impl Transfer {
         }
     }
 }
+
+/// Looked up once for every contour.
+static LIGHT_OF_SRGB: LazyLock<[f64; 256]> =
+    LazyLock::new(|| std::array::from_fn(|value| 255.0 * of_srgb(value as f64 / 255.0)));
 
 /// Numbers of the standard: up to the first of them the curve is straight.
 const STRAIGHT: f64 = 0.04045;

@@ -1,5 +1,5 @@
 //! First frames that are wrong, or show little.
-use crate::filter_support::{filtered, frames_of, settings};
+use crate::filter_support::{filtered, frames_of, omega_of, settings};
 use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
 use freeform_outline_filter::{FilterSettings, MotionFilter, Phase, Unstated, estimate_batch};
 use freeform_riccati::{MotionModel, RigidMotion};
@@ -24,8 +24,7 @@ fn after_a_wrong_first_frame_another_wrong_one_begins_no_map_where_two_agree() {
         let run = filtered(MotionModel::Rigid, &frames);
         // The map is begun with the fifth.
         assert_eq!((run.restarts(), run.frames_rejected()), (1, 4), "seed {seed}");
-        let omega = run.estimate().expect("an estimate").parameters().next().expect("omega comes first");
-        let (value, std) = (omega.value.expect("stated"), omega.standard_deviation.expect("known"));
+        let (value, std) = omega_of(&run).expect("stated");
         assert!((value - MOTION.omega).abs() < 5.0 * std && std < 0.01, "seed {seed}: {value}, std {std}");
     }
 }
@@ -47,8 +46,7 @@ fn a_frame_that_shows_the_whole_of_what_a_corner_was_seen_of_begins_the_map_anew
         let run = filtered(MotionModel::Rigid, &seen_in_part_at_first(0.04, seed));
         assert_eq!((run.restarts(), run.frames_rejected(), run.frames_accepted()), (0, 0, 30), "seed {seed}");
         assert_eq!(run.segment(), 1, "seed {seed}");
-        let omega = run.estimate().expect("an estimate").parameters().next().expect("omega comes first");
-        let (value, std) = (omega.value.expect("stated"), omega.standard_deviation.expect("known"));
+        let (value, std) = omega_of(&run).expect("stated");
         assert!((value - 0.5).abs() < 5.0 * std && std < 0.02, "seed {seed}: {value}, std {std}");
     }
 }

@@ -18,13 +18,8 @@ type Sizes = [f64; 3];
 
 /// What was seen of one body, or of several that are alike.
 struct Body {
-    /// The root of its area where it was seen first, in pixels.
-    length: f64,
-    /// Its sizes, by the grey values as they are and by the light of sRGB.
-    sizes: Vec<[Sizes; 2]>,
-    /// Pictures that it was seen in, and the last of them.
-    pictures: usize,
-    last: usize,
+    /// The pictures that it was seen in, in order, with its sizes by the grey values as they are and by the light of sRGB.
+    seen: Vec<(usize, [Sizes; 2])>,
 }
 
 /// What the sizes of bodies say.
@@ -88,13 +83,13 @@ fn sizes_told(linear: &[Vec<TracedOutline>], srgb: &[Vec<TracedOutline>]) -> OfS
             if of_linear.pixel_count == of_srgb.pixel_count && !of_linear.touches_border {
                 let sizes = [of_linear, of_srgb].map(sizes_of);
                 match bodies.iter_mut().find(|body| body.is_like(&sizes)) {
-                    Some(body) => body.add(sizes, picture),
-                    None => bodies.push(Body::new(of_linear.area.sqrt(), sizes, picture)),
+                    Some(body) => body.seen.push((picture, sizes)),
+                    None => bodies.push(Body { seen: vec![(picture, sizes)] }),
                 }
             }
         }
     }
-    bodies.retain(|body| body.pictures >= tuning::FEWEST);
+    bodies.retain(|body| body.pictures() >= tuning::FEWEST);
     let [as_they_are, as_light] =
         [0, 1].map(|of| bodies.iter().flat_map(|body| body.deviations(of)).collect::<Vec<f64>>());
     let mut ordered = as_they_are.clone();
@@ -131,28 +126,24 @@ impl OfEdges {
 }
 
 impl Body {
-    fn new(length: f64, sizes: [Sizes; 2], picture: usize) -> Self {
-        Self { length, sizes: vec![sizes], pictures: 1, last: picture }
+    /// Number of the pictures that it was seen in.
+    fn pictures(&self) -> usize {
+        self.seen.chunk_by(|(one, _), (next, _)| one == next).count()
     }
 
     /// Whether sizes may be those of this body: by what the grey values stand for they hardly change.
     fn is_like(&self, sizes: &[Sizes; 2]) -> bool {
         let is_alike = |(a, b): (&Sizes, &Sizes)| a.iter().zip(b).all(|(a, b)| (a - b).abs() < tuning::ALIKE);
-        self.sizes[0].iter().zip(sizes).any(is_alike)
+        self.seen.first().is_some_and(|(_, first)| first.iter().zip(sizes).any(is_alike))
     }
 
-    fn add(&mut self, sizes: [Sizes; 2], picture: usize) {
-        self.sizes.push(sizes);
-        self.pictures += usize::from(picture != self.last);
-        self.last = picture;
-    }
-
-    /// How far each of its sizes is from its median, by one of the transfer functions, in pixels.
+    /// How far each of its sizes is from its median, by one of the transfer functions, in pixels where it has the size of the first picture.
     fn deviations(&self, of: usize) -> impl Iterator<Item = f64> {
+        let length = self.seen.first().map_or(0.0, |(_, [[root_of_area, ..], _])| root_of_area.exp());
         (0..3).flat_map(move |k| {
-            let values = || self.sizes.iter().map(move |sizes| sizes[of][k]);
+            let values = || self.seen.iter().map(move |(_, sizes)| sizes[of][k]);
             let middle = median(values()).unwrap_or_default();
-            values().map(move |value| self.length * (value - middle).abs())
+            values().map(move |value| length * (value - middle).abs())
         })
     }
 }

@@ -241,14 +241,11 @@ impl Trial {
     /// What a way looks at in each picture, and how.
     pub(super) fn views(&self, tracing: &Tracing) -> (PictureSettings, Vec<View>) {
         let settings = self.settings(tracing);
-        let of_picture = |k: usize| {
-            let ground = match settings.background {
-                Some(Background::Picture(_)) => self.ground(tracing, &settings, k).cloned(),
-                _ => None,
-            };
-            View { picture: Arc::clone(&self.pictures[k]), ground }
+        let view = |(k, picture): (usize, &Arc<GrayImage>)| {
+            let ground = self.ground(tracing, &settings, k).cloned();
+            View { picture: Arc::clone(picture), ground }
         };
-        let views = (0..self.count()).map(of_picture).collect();
+        let views = self.pictures.iter().enumerate().map(view).collect();
         (settings, views)
     }
 

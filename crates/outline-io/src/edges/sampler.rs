@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_light_is_comparison_and_dark_objects_are_the_lighter_ones() {
+    fn light_is_compared_and_dark_objects_are_the_lighter_ones() {
         let picture = GrayImage::from_fn(4, 4, |x, _| image::Luma([50 * x as u8]));
         let ground = GrayImage::from_pixel(4, 4, image::Luma([100]));
         let sampler = |contrast, transfer, comparison| {
