@@ -14,6 +14,10 @@ const ALONG: f64 = 0.8;
 const OTHER: u8 = 16;
 const OF_EIGHT: usize = 6;
 
+/// Rows farther in, as many as a bar has at least, of which so large a share has its grey value in as many pictures, are of the same ground: bodies on
+/// it hide less of it.
+const GROUND: f64 = 0.6;
+
 /// Fewest rows of a bar: fewer are the edge of a picture that has been scaled or filtered.
 const FEWEST: u32 = 3;
 
@@ -43,7 +47,8 @@ impl Margins {
 
     /// The even bars at the sides of pictures, as video has them that was fitted into another shape: of one grey value in all pictures, and
     /// beside it something else all along. None where a bar goes on into the picture, as between two pictures side by side: what is left of it
-    /// would be taken for a body. None in pictures of several sizes.
+    /// would be taken for a body; nor where there is more of the same beyond what is beside it, as of a ground on which a line is painted. None in
+    /// pictures of several sizes.
     #[must_use]
     pub fn of_bars(pictures: &[Arc<GrayImage>]) -> Self {
         let Some((columns, rows)) = pictures.first().map(|picture| picture.dimensions()) else {
@@ -114,8 +119,15 @@ fn bar(pictures: &[Arc<GrayImage>], (rows, columns): (u32, u32), at: impl Fn(u32
         return Some(0);
     }
     let ends = |picture: &&Arc<GrayImage>| differs(picture, beside, OTHER) as f64 >= ALONG * f64::from(columns);
-    let is_seen = 8 * pictures.iter().filter(ends).count() >= OF_EIGHT * pictures.len();
-    if !is_seen {
+    let are_most = |count: usize| 8 * count >= OF_EIGHT * pictures.len();
+    let goes_on = |row: u32| {
+        let is_ground = |picture: &&Arc<GrayImage>| {
+            let other = differs(picture, row, EVEN);
+            other as f64 <= (1.0 - GROUND) * f64::from(columns)
+        };
+        are_most(pictures.iter().filter(is_ground).count())
+    };
+    if !are_most(pictures.iter().filter(ends).count()) || has_run((beside..rows / 2).map(goes_on)) {
         return Some(0);
     }
     // But for those at the ends, which are of other bars.
@@ -123,4 +135,13 @@ fn bar(pictures: &[Arc<GrayImage>], (rows, columns): (u32, u32), at: impl Fn(u32
     let first = (0..columns).find(|column| !is_bar(column))?;
     let last = (0..columns).rev().find(|column| !is_bar(column))?;
     if (first..last).any(|column| is_bar(&column)) { None } else { Some(beside) }
+}
+
+/// Whether as many in a row are true as a bar has rows at least.
+fn has_run(rows: impl Iterator<Item = bool>) -> bool {
+    let mut run = 0;
+    rows.into_iter().any(|is_true| {
+        run = if is_true { run + 1 } else { 0 };
+        run >= FEWEST
+    })
 }

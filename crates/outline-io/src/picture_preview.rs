@@ -8,6 +8,7 @@ use crate::{
     background::Background,
     channel::Channel,
     choice::{PictureSample, SamplePlan, TracingChoice, choose_tracing},
+    edges::EdgeFit,
     flat_bodies::level_of_missed,
     ground_picture::ground_picture,
     identity::Selection,
@@ -28,6 +29,9 @@ const FEWEST_PICTURES: usize = 3;
 
 /// Pictures whose edges tell how well outlines are known.
 const EDGES_LOOKED_AT: usize = 6;
+
+/// Share of those that are blurred by motion whose edges are no farther off than is said.
+const BLURRED_UP_TO: f64 = 0.8;
 
 /// Pictures whose edges and steps tell whether they are drawn on whole pixels: a speed that is off a whole number of pixels by a tenth shows a step
 /// of another pixel in one picture of ten.
@@ -241,10 +245,18 @@ impl PicturePreview {
             _ => traced(EDGES_LOOKED_AT, Selection::Largest)?,
         };
         let outlines = largest.iter().take(EDGES_LOOKED_AT).flat_map(|traced| traced.objects.iter().flatten());
-        let mut lengths: Vec<f64> =
-            outlines.filter_map(|(_, traced)| Some(traced.edges.as_ref()?.systematic)).collect();
-        lengths.sort_by(f64::total_cmp);
-        lengths.get(lengths.len() / 2).copied().map(OutlineUncertainty::Edges)
+        let edges: Vec<&EdgeFit> = outlines.filter_map(|(_, traced)| traced.edges.as_ref()).collect();
+        let at = |share: f64, mut lengths: Vec<f64>| {
+            lengths.sort_by(f64::total_cmp);
+            lengths.get((share * lengths.len() as f64) as usize).copied()
+        };
+        let usual = at(0.5, edges.iter().map(|fit| fit.systematic).collect())?;
+        // Blur by motion comes and goes with the speed: what it makes of edges is there for the pictures that have it, if it is seen in some.
+        let by_motion: Vec<f64> =
+            edges.iter().filter(|fit| fit.motion_blur > 0.0).map(|fit| fit.systematic_by_motion).collect();
+        let is_seen = 3 * by_motion.len() >= edges.len();
+        let by_motion = at(BLURRED_UP_TO, by_motion).filter(|_| is_seen).unwrap_or(0.0);
+        Some(OutlineUncertainty::Edges(usual.hypot(by_motion)))
     }
 
     /// The [ground](ground_picture) by the pictures of the sample, at their full size; `None` where nothing can be looked at.

@@ -269,6 +269,7 @@ impl Window<'_> {
         }
         if let Some(edges) = &mut edges {
             edges.systematic *= settings.pixel_size;
+            edges.systematic_by_motion *= settings.pixel_size;
             if !settings.y_up {
                 edges.deviations.reverse();
             }
@@ -282,7 +283,7 @@ impl Window<'_> {
                 edges.deviations = of_visible_arcs(&points, &edges.deviations);
             }
             for (contour, fit) in inner.iter().zip(of_inner) {
-                edges.append(fit, contour.len(), settings, is_open);
+                edges.append(fit, contour, settings, is_open);
             }
             edges.deviations.iter_mut().for_each(|deviation| *deviation *= settings.pixel_size);
         }
@@ -319,10 +320,15 @@ impl Window<'_> {
 }
 
 impl EdgeFit {
-    /// Appends the deviations of another contour, of so many points, by its own fit, if any.
-    fn append(&mut self, fit: Option<EdgeFit>, points: usize, settings: &TraceSettings, is_open: bool) {
+    /// Appends the deviations of the points of another contour by its own fit, if any. Smaller contours are off by more where motion blurs them.
+    fn append(&mut self, fit: Option<EdgeFit>, contour: &[Point2<f64>], settings: &TraceSettings, is_open: bool) {
         let unknown = self.deviations.iter().copied().fold(0.0, f64::max);
-        let mut deviations = fit.map_or_else(|| vec![unknown; points], |fit| fit.deviations);
+        let around: f64 = contour.iter().zip(contour.iter().cycle().skip(1)).map(|(a, b)| (b - a).norm()).sum();
+        let area = AreaAndCentre::of(&contour.iter().copied()).signed_area.abs();
+        let by_motion = self.off_by_motion(4.0 * area / (around * settings.pixel_size));
+        let of_fit = fit.as_ref().map_or(0.0, |fit| fit.systematic_by_motion);
+        self.systematic_by_motion = self.systematic_by_motion.max(settings.pixel_size * of_fit.max(by_motion));
+        let mut deviations = fit.map_or_else(|| vec![unknown; contour.len()], |fit| fit.deviations);
         if !settings.y_up {
             deviations.reverse();
         }

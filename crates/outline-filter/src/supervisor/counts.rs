@@ -15,6 +15,8 @@ pub(super) struct Counts {
     pub(super) restarts: usize,
     /// Times that the map was begun anew with a frame that showed more than those before: the turn at last, or the whole of what had been a part.
     pub(super) begun_with_more: usize,
+    /// Times that a frame agreed with the turn that the motion had led to and with another, which was taken.
+    pub(super) turned_elsewhere: usize,
     /// Times that the map was begun anew with a frame whose points along an edge were left out.
     pub(super) begun_without_edge: usize,
     /// Starts in a row after which the object was not found again.

@@ -2,7 +2,10 @@
 use freeform_curve_fit::Outline;
 use freeform_riccati::MotionModel;
 
-use super::motion_filter::{FilterStep, MotionFilter, Phase};
+use super::{
+    counts::Counts,
+    motion_filter::{FilterStep, MotionFilter, Phase},
+};
 use crate::{
     occlusion::StandingEdge,
     track::Track,
@@ -35,10 +38,12 @@ impl MotionFilter {
     /// Counted up from 0 where poses no longer go back to the same first outline: after a [restart](Self::restarts), where a second frame has shown far
     /// more of the object than the first, and where a frame has shown the
     /// turn of the object for the first time, since nobody knows how far it had turned until then, and where an [edge](Self::standing_edges) was
-    /// found not to be of the object.
+    /// found not to be of the object. So it is where a frame agrees with the turn that the motion has led to, as with every tooth of a gear, and another
+    /// one is taken that explains it better: the outline may have misled.
     #[must_use]
     pub fn segment(&self) -> usize {
-        self.counts.restarts + self.counts.begun_with_more + self.counts.begun_without_edge
+        let Counts { restarts, begun_with_more, turned_elsewhere, begun_without_edge, .. } = self.counts;
+        restarts + begun_with_more + turned_elsewhere + begun_without_edge
     }
 
     /// Looks at the outline of a frame at a time in seconds; whether it shows an edge that was not known.

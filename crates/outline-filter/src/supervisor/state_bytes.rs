@@ -10,7 +10,7 @@ use crate::track::{SavedCells, Track};
 use crate::tuning::symmetry::LARGEST_ORDER;
 
 /// Version of the format: another one for every change of what is saved.
-const VERSION: u32 = 33;
+const VERSION: u32 = 34;
 
 /// The format of the bytes.
 const FORMAT: StateFormat = state_format(*b"filt", "filter");
@@ -139,11 +139,12 @@ impl MotionFilter {
             rejected_by_track,
             restarts,
             begun_with_more,
+            turned_elsewhere,
             begun_without_edge,
             fruitless_starts,
         } = self.counts;
         let of_recording = [accepted_in_recording, rejected_in_recording, rejected_in_a_row, hidden_in_a_row];
-        let of_starts = [restarts, begun_with_more, begun_without_edge, fruitless_starts];
+        let of_starts = [restarts, begun_with_more, turned_elsewhere, begun_without_edge, fruitless_starts];
         of_recording.iter().chain(&of_starts).chain(&[accepted_by_track, rejected_by_track]).all(|count| *count < most)
     }
 }

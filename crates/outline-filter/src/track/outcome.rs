@@ -26,6 +26,8 @@ pub(crate) enum Doubt {
     Direction {
         /// The [weakest agreement](crate::measurement::View::weakest_agreement).
         weakest: f64,
+        /// Whether more of all points than usual disagree as well.
+        disagrees: bool,
     },
     /// Some points disagree, and the frame before was not taken: the motion may have changed meanwhile.
     AfterRejected,

@@ -14,6 +14,8 @@ pub(super) struct UsualAgreement {
     disagreeing: f64,
     /// The [weakest agreement](crate::measurement::View::weakest_agreement).
     weakest: f64,
+    /// Share of the points that disagree in the last frame which raised no doubt by it.
+    last_disagreeing: f64,
     /// Mean share of the points that disagree together with both of their neighbours, over the last frames.
     in_runs: f64,
     frames: usize,
@@ -21,17 +23,18 @@ pub(super) struct UsualAgreement {
 
 impl Default for UsualAgreement {
     fn default() -> Self {
-        Self { disagreeing: 0.0, weakest: 1.0, in_runs: 0.0, frames: 0 }
+        Self { disagreeing: 0.0, weakest: 1.0, last_disagreeing: 0.0, in_runs: 0.0, frames: 0 }
     }
 }
 
 impl UsualAgreement {
-    /// Updates the usual share by a frame of so many points with a share that disagrees; whether that is significantly more than usual.
+    /// Updates the usual share by a frame of so many points with a share that disagrees; whether that is significantly more than usual, and than
+    /// in the frame before. A share that grows bit by bit is of a part that comes off the outline, as what the light leaves of an object does where
+    /// it turns, and of no motion that has led elsewhere.
     fn update(&mut self, disagreeing: f64, points: usize, shown: TurnShown) -> bool {
         let is_known = self.frames >= tuning::FEWEST_FRAMES;
         let usual = self.disagreeing;
         let points = points.max(1) as f64;
-        let deviation = (usual.max(1.0 / points) * (1.0 - usual) / points).sqrt();
         self.frames += 1;
         self.disagreeing += gain(disagreeing < usual).max(1.0 / self.frames as f64) * (disagreeing - usual);
         // Few marks are soon missed, in the very first frames as well.
@@ -39,7 +42,15 @@ impl UsualAgreement {
             TurnShown::ByMany => tuning::SIGNIFICANT,
             TurnShown::ByFew => tuning::SIGNIFICANT_OF_FEW,
         };
-        (is_known || shown == TurnShown::ByFew) && disagreeing > usual + significant * deviation
+        let is_more = |than: f64| {
+            let deviation = (than.max(1.0 / points) * (1.0 - than) / points).sqrt();
+            disagreeing > than + significant * deviation
+        };
+        let is_in_doubt = (is_known || shown == TurnShown::ByFew) && is_more(usual) && is_more(self.last_disagreeing);
+        if !is_in_doubt {
+            self.last_disagreeing = disagreeing;
+        }
+        is_in_doubt
     }
 
     /// Updates the mean share of points that disagree in runs by that of the frame that was taken last.
@@ -75,7 +86,7 @@ impl Track {
         let shown = if self.map.is_all_but_round() { TurnShown::ByFew } else { TurnShown::ByMany };
         let disagrees = self.usual.update(disagreeing(agreement), points, shown);
         if let Some(weakest) = weakest.filter(|weakest| self.usual.update_weakest(*weakest)) {
-            return Some(Doubt::Direction { weakest });
+            return Some(Doubt::Direction { weakest, disagrees });
         }
         disagrees.then_some(Doubt::Points)
     }
@@ -114,9 +125,11 @@ impl Track {
             Doubt::Points => {
                 let more = disagreeing(agreement) - self.usual.disagreeing;
                 self.usual.disagreeing += tuning::UNEXPLAINED * more.max(0.0);
+                self.usual.last_disagreeing = disagreeing(agreement);
             }
-            Doubt::Direction { weakest } => {
+            Doubt::Direction { weakest, .. } => {
                 self.usual.weakest += tuning::UNEXPLAINED * (weakest - self.usual.weakest).min(0.0);
+                self.usual.last_disagreeing = disagreeing(agreement);
             }
             Doubt::AfterRejected | Doubt::Turn => {}
         }
@@ -132,7 +145,9 @@ fn disagreeing(agreement: f64) -> f64 {
 impl UsualAgreement {
     /// Whether it is a share of so many frames.
     pub(super) fn is_valid(&self) -> bool {
-        [self.disagreeing, self.weakest, self.in_runs].iter().all(|share| (0.0..=1.0).contains(share))
+        [self.disagreeing, self.weakest, self.last_disagreeing, self.in_runs]
+            .iter()
+            .all(|share| (0.0..=1.0).contains(share))
             && self.frames < freeform_estimate::StateFormat::MOST_COUNTED
     }
 }
@@ -158,6 +173,14 @@ mod tests {
         assert_eq!(noticed(&mut usual, 0.2, 5), 5);
         assert!(noticed(&mut usual, 0.2, 200) < 100);
         assert_eq!(noticed(&mut usual, 0.2, 50), 0);
+    }
+
+    #[test]
+    fn points_that_come_off_the_outline_bit_by_bit_raise_no_doubt_and_as_many_at_once_do() {
+        let mut usual = UsualAgreement::default();
+        let share = |frame: i32| 0.01 + 0.005 * f64::from((frame - 10).clamp(0, 30));
+        assert!((0..60).all(|frame| !usual.update(share(frame), 400, TurnShown::ByMany)));
+        assert!(usual.update(share(60) + 0.16, 400, TurnShown::ByMany));
     }
 
     #[test]

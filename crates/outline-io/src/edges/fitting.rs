@@ -1,9 +1,10 @@
 //! The edges on the normals of points, each by the widest profile that shows it alone.
 use nalgebra::{Point2, Vector2};
 
+use super::blur_width::EdgeBlur;
 use super::sampler::Sampler;
 use super::step_fit::{SPACING, StepFit};
-use super::{Edge, FIRST_WIDTH, blur_width, median};
+use super::{Edge, FIRST_WIDTH, median};
 
 /// How far narrow profiles reach, in widths of the edge and pixels: near enough for thin parts.
 const NARROW: [f64; 2] = [2.2, 1.2];
@@ -17,6 +18,10 @@ const WIDE: [[f64; 2]; 2] = [[4.0, 1.5], [6.0, -1.5]];
 /// A wide fit that leaves so many times what narrow ones leave is of more than one edge.
 const NOT_ALONE: f64 = 1.3;
 
+/// Farthest that one fit moves an edge, and all of them, in pixels and in widths of it: what is farther off is not seen well by the profile.
+const MOST_MOVED: [f64; 2] = [1.0, 0.5];
+const FARTHEST_FOUND: [f64; 2] = [8.0, 2.0];
+
 /// Farthest that the wide profile may move an edge, in widths of it.
 const SAME_EDGE: f64 = 0.4;
 
@@ -28,33 +33,108 @@ const BEFORE_ANOTHER: f64 = 1.4;
 /// Shortest profile, in widths of the edge and pixels: 1.8 widths tell a place no more where the grey values of both sides are not known.
 const SHORTEST: [f64; 2] = [2.0, 0.0];
 
+/// Edges are fitted with the width of their own to within this factor, either way, of which a place is independent to first order.
+const SAME_WIDTH: f64 = 1.07;
+
+/// Wide edges are fitted again, so many times at most, as long as they are found to be wider than before by this factor.
+const MOST_ROUNDS: usize = 5;
+const WIDER_AGAIN: f64 = 1.1;
+
 /// How far profiles reach, in pixels, by widths of the edge and pixels.
 fn reach([widths, pixels]: [f64; 2], width: f64) -> f64 {
     widths * width + pixels
 }
 
+/// Widths of edges with these normals, each of about as wide ones, and which of them is that of each edge: any, of one without a normal.
+fn classes(blur: &EdgeBlur, normals: &[Option<Vector2<f64>>]) -> (Vec<f64>, Vec<usize>) {
+    let step = 2.0 * SAME_WIDTH.ln();
+    let number = |normal: &Vector2<f64>| (blur.across(normal).ln() / step).round() as i64;
+    let mut numbers: Vec<i64> = normals.iter().flatten().map(number).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    let class = |normal: &Option<Vector2<f64>>| {
+        normal.map_or(0, |normal| numbers.partition_point(|other| *other < number(&normal)))
+    };
+    (numbers.iter().map(|number| (*number as f64 * step).exp()).collect(), normals.iter().map(class).collect())
+}
+
+/// Edges that were fitted, with how wide they are.
+pub(super) struct Fitted {
+    pub(super) edges: Vec<Edge>,
+    pub(super) blur: EdgeBlur,
+    /// The widest fits, one for edges of about one width each.
+    pub(super) fits: Vec<StepFit>,
+    /// Which of them is that of each edge.
+    pub(super) fit_of: Vec<usize>,
+}
+
 impl Sampler<'_> {
-    /// The edges on the normals of points, and the widest fit. `None` where there are none.
-    pub(super) fn fitted(
+    /// The edges on the normals of points. `None` where there are none.
+    pub(super) fn fitted(&self, points: &[Point2<f64>], normals: &[Option<Vector2<f64>>]) -> Option<Fitted> {
+        let mut edges = vec![Edge::default(); points.len()];
+        self.fit_all(points, normals, &mut edges, &StepFit::new(FIRST_WIDTH, 4.0), 2);
+        let mut blur = EdgeBlur::of(self, points, normals, &edges)?;
+        let mut fits = self.fit_blurred(points, normals, &mut edges, &blur)?;
+        if blur.way() > 0.0 {
+            // Profiles that are not about wide edges yet seem narrower.
+            for _ in 0..MOST_ROUNDS {
+                let before = std::mem::replace(&mut blur, EdgeBlur::of(self, points, normals, &edges)?);
+                fits = self.fit_blurred(points, normals, &mut edges, &blur)?;
+                if blur.way() < WIDER_AGAIN * before.way() {
+                    break;
+                }
+            }
+        }
+        let (fits, fit_of) = fits;
+        Some(Fitted { edges, blur, fits, fit_of })
+    }
+
+    /// Edges of a blur, each by the width that it has, from where they were found roughly: the widest fits, and which of them is that of each
+    /// edge. `None` where there are none.
+    fn fit_blurred(
         &self,
         points: &[Point2<f64>],
         normals: &[Option<Vector2<f64>>],
-    ) -> Option<(Vec<Edge>, StepFit)> {
-        let mut edges = vec![Edge::default(); points.len()];
-        self.fit_all(points, normals, &mut edges, &StepFit::new(FIRST_WIDTH, 4.0), 2);
-        let width = blur_width::of(self, points, normals, &edges)?;
-        let narrow = StepFit::new(width, reach(NARROW, width).clamp(2.5, 8.0));
-        self.fit_all(points, normals, &mut edges, &narrow, 3);
+        edges: &mut [Edge],
+        blur: &EdgeBlur,
+    ) -> Option<(Vec<StepFit>, Vec<usize>)> {
+        if blur.way() == 0.0 {
+            let fit = self.fit_width(points, normals, edges, blur.mean_width())?;
+            return Some((vec![fit], vec![0; points.len()]));
+        }
+        let (widths, fit_of) = classes(blur, normals);
+        let mut fits = Vec::new();
+        for (class, width) in widths.into_iter().enumerate() {
+            let own: Vec<usize> = (0..points.len()).filter(|&i| fit_of[i] == class).collect();
+            let points: Vec<Point2<f64>> = own.iter().map(|&i| points[i]).collect();
+            let normals: Vec<Option<Vector2<f64>>> = own.iter().map(|&i| normals[i]).collect();
+            let mut of_width: Vec<Edge> = own.iter().map(|&i| edges[i]).collect();
+            fits.push(self.fit_width(&points, &normals, &mut of_width, width)?);
+            own.into_iter().zip(of_width).for_each(|(i, edge)| edges[i] = edge);
+        }
+        Some((fits, fit_of))
+    }
+
+    /// Edges of one width, from where they were found roughly; the widest fit. `None` where there are none.
+    fn fit_width(
+        &self,
+        points: &[Point2<f64>],
+        normals: &[Option<Vector2<f64>>],
+        edges: &mut [Edge],
+        width: f64,
+    ) -> Option<StepFit> {
+        let narrow = StepFit::new(width, reach(NARROW, width).clamp(2.5, 12.0));
+        self.fit_all(points, normals, edges, &narrow, 3);
         let far = WIDE.map(|of| reach(of, width)).into_iter().fold(3.0, f64::max);
         let fit = StepFit::new(width, far.min(18.0));
-        let mut wide = edges.clone();
+        let mut wide = edges.to_vec();
         self.fit_all(points, normals, &mut wide, &fit, 2);
         let typical_of = |edges: &[Edge]| {
             let with_normal = edges.iter().zip(normals).filter(|(_, normal)| normal.is_some());
             median(with_normal.map(|(edge, _)| edge.residual))
         };
         // Of a thin body most wide profiles reach its other side.
-        let [of_wide, of_narrow] = [typical_of(&wide)?, NOT_ALONE * typical_of(&edges)?];
+        let [of_wide, of_narrow] = [typical_of(&wide)?, NOT_ALONE * typical_of(edges)?];
         let is_thin = of_narrow < of_wide;
         let typical = of_wide.min(of_narrow);
         let mut shorter = Shorter { fit: &fit, typical, fits: Vec::new(), values: Vec::new() };
@@ -71,7 +151,7 @@ impl Sampler<'_> {
                 *edge = wide;
             }
         }
-        Some((edges, fit))
+        Some(fit)
     }
 
     fn fit_all(
@@ -107,8 +187,10 @@ impl Sampler<'_> {
             // Outwards the signal falls.
             edge.step = -found.step;
             edge.one_sided = Some(found.one_sided);
-            let moved = if edge.step > 0.0 { found.place.clamp(-1.0, 1.0) } else { 0.0 };
-            edge.place = (edge.place + moved).clamp(-8.0, 8.0);
+            let most = MOST_MOVED[0].max(MOST_MOVED[1] * fit.width());
+            let moved = if edge.step > 0.0 { found.place.clamp(-most, most) } else { 0.0 };
+            let farthest = FARTHEST_FOUND[0].max(FARTHEST_FOUND[1] * fit.width());
+            edge.place = (edge.place + moved).clamp(-farthest, farthest);
             if moved.abs() < 0.004 {
                 break;
             }

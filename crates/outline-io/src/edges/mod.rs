@@ -2,7 +2,8 @@
 //!
 //! Along the normal of an outline the grey value is `m + c (Phi((s - e) / w) - 1/2)`: a step between the grey values of the two
 //! sides, blurred by a Gaussian. With the place `e` of the step come its own height `c` and middle `m`, so that neither a threshold
-//! nor a shading moves it. The width `w` is one for a contour.
+//! nor a shading moves it. The width `w` is one for a contour, or goes with the direction of the edge where the body
+//! moves while the shutter is open.
 mod blur_width;
 mod crossings;
 mod edge_profile;
@@ -21,7 +22,9 @@ use crate::tracing_input::GroundComparison;
 use crate::transfer::Transfer;
 pub use edge_profile::{EdgeProfile, SoughtEdges};
 
+use blur_width::EdgeBlur;
 use crossings::{Moved, undo_crossings};
+use fitting::Fitted;
 use sampler::Sampler;
 
 /// Width of the edges before it is known, in pixels.
@@ -55,6 +58,22 @@ const INTERPOLATED_NOISE: f64 = 2.0 / 3.0;
 /// which of its points count for more, and from picture to picture it is known too roughly to weigh one against the other.
 pub(crate) const OF_POINT: f64 = 0.01;
 
+/// Bends of more than this over the width of the edge move it by less than the first order says.
+const MOST_BENT: f64 = 0.3;
+
+/// Where an edge is seen among what the motion spreads, as a share of the mean, and how far that may be off: most of it is near one end. Measured on
+/// discs that move by 0.3 to 0.9 of their radius.
+const SEEN_OF_BEND: f64 = 0.55;
+const BEND_UNSURE: f64 = 0.2;
+
+/// Share of its extent along the path that a body may move by while the shutter is open for its shape to be told, of a disc 0.7 of the radius, and
+/// from which on it is not told. There its edges may be off by this share of the way.
+const LONGEST_WAY: [f64; 2] = [0.35, 0.42];
+const OF_LONG_WAY: f64 = 0.2;
+
+/// Edges of one width whose residuals have a median of their own, to a fifth of it.
+const FEWEST_OF_WIDTH: usize = 24;
+
 /// Standard deviation of the Gaussian that heights of steps are smoothed by along the contour, in points.
 const STEPS_TOGETHER: f64 = 4.0;
 
@@ -78,8 +97,13 @@ pub struct EdgeFit {
     /// Median height of the step, in grey values; positive. Where edges are looked for in light, it is a height of the light, divided by how much
     /// light a grey value more is in the middle of the edges.
     pub contrast: f64,
-    /// Width of the edges: the standard deviation of their Gaussian blur, in pixels.
+    /// Width of the edges: the standard deviation of their Gaussian blur in the mean over all directions, in pixels.
     pub blur: f64,
+    /// How far the object moves while the shutter is open, in pixels, to a third or so: as edges across its path are wider than those along it. From
+    /// about 1.5 pixels on, up to 30; 0 where all are alike. Pictures that were filtered along their rows alone have such edges too.
+    pub motion_blur: f64,
+    /// How far edges may lie off together for that, in the unit of the outline. Not part of [`systematic`](Self::systematic).
+    pub systematic_by_motion: f64,
     /// Standard deviation of the grey values about the fitted steps, in the unit of the contrast.
     pub noise: f64,
     /// Share of the points that have an edge of their own.
@@ -94,6 +118,12 @@ impl EdgeFit {
     #[must_use]
     pub fn is_on_pixels(&self) -> bool {
         self.on_pixels > MOST_ON_PIXELS
+    }
+
+    /// How far edges of another contour of the object may lie off together, as wide as this in pixels, as motion blurs them: what is too small for
+    /// the way shows no edges of its own.
+    pub(crate) fn off_by_motion(&self, extent: f64) -> f64 {
+        of_long_way(self.motion_blur, extent)
     }
 
     /// With what such edges are off by, if they are: a side may lie off by half a pixel either way.
@@ -149,38 +179,46 @@ impl EdgeSource<'_> {
         let at = |c: &Crossing| Point2::new(left as f64 + c.x, top as f64 + c.y);
         let points: Vec<Point2<f64>> = line.iter().map(at).collect();
         let normals: Vec<Option<Vector2<f64>>> = (0..line.len()).map(|i| outward(line, i)).collect();
-        let (edges, fit) = Sampler::new(self, &points).fitted(&points, &normals)?;
-        let width = fit.width();
+        let Fitted { edges, blur, fits, fit_of } = Sampler::new(self, &points).fitted(&points, &normals)?;
         let own = |i: &usize| normals[*i].is_some();
         let all: Vec<usize> = (0..line.len()).filter(own).collect();
         let contrast = median(all.iter().map(|&i| edges[i].step))?;
-        let residual = median(all.iter().map(|&i| edges[i].residual))?;
+        let residuals = residuals_of(&edges, &fit_of, fits.len(), &all)?;
+        let residual = residuals.iter().copied().fold(f64::INFINITY, f64::min);
         if contrast <= 0.0 {
             return None;
         }
         let noise = residual / INTERPOLATED_NOISE;
-        let farthest = FARTHEST[0] + FARTHEST[1] * width;
-        let smallest = (SMALLEST_STEP * contrast).max(CLEAR_STEP * fit.deviation_of_step(residual));
+        let farthest = |i: usize| FARTHEST[0] + FARTHEST[1] * fits[fit_of[i]].width();
+        let smallest: Vec<f64> = fits
+            .iter()
+            .zip(&residuals)
+            .map(|(fit, left)| (SMALLEST_STEP * contrast).max(CLEAR_STEP * fit.deviation_of_step(*left)))
+            .collect();
         let mut is_clear: Vec<bool> = (0..line.len())
             .map(|i| {
                 let Edge { place, step, residual: left, .. } = edges[i];
-                own(&i) && place.abs() <= farthest && step >= smallest && left <= WORST_FIT * residual.max(0.5)
+                let is_step = step >= smallest[fit_of[i]] && left <= WORST_FIT * residuals[fit_of[i]].max(0.5);
+                own(&i) && place.abs() <= farthest(i) && is_step
             })
             .collect();
-        leave_out_strays(&edges, &mut is_clear, FARTHEST_FROM_NEIGHBOURS[0] + FARTHEST_FROM_NEIGHBOURS[1] * width);
+        let from_neighbours =
+            |i: usize| FARTHEST_FROM_NEIGHBOURS[0] + FARTHEST_FROM_NEIGHBOURS[1] * fits[fit_of[i]].width();
+        leave_out_strays(&edges, &mut is_clear, from_neighbours);
         let clear_share = is_clear.iter().filter(|clear| **clear).count() as f64 / all.len().max(1) as f64;
         let places = bridged(&edges, &is_clear)?;
         let places = smoothed(&places, self.along);
-        let bends = bends(&points, &normals, &places, width);
+        let (bends, of_motion) = bends(&points, &normals, &places, &blur);
+        let of_motion = of_motion.hypot(of_long_way(blur.way(), blur.extent_along(&points)));
         let steps = steps_around(&edges, &is_clear);
         let deviation = |i: usize| {
             let step = if is_clear[i] { steps[i] } else { contrast };
             let random = noise.max(0.3) * edges[i].deviation / step;
-            if is_clear[i] { random } else { random.max(0.5 * farthest) }
+            if is_clear[i] { random } else { random.max(0.5 * farthest(i)) }
         };
         let mut deviations: Vec<f64> = (0..line.len()).map(deviation).collect();
         let shifts = edges.iter().zip(&is_clear).filter(|(_, clear)| **clear).filter_map(|(edge, _)| edge.one_sided);
-        let systematic = systematic::of(&fit, noise, contrast, shifts);
+        let systematic = systematic::of(&fits, noise, contrast, shifts);
         let shift = |i: usize| (places[i] + bends[i]) * normals[i].unwrap_or_default();
         // Nothing is seen beyond the picture.
         let [right, lower] = [self.picture.width(), self.picture.height()].map(|size| f64::from(size) - 0.5);
@@ -197,7 +235,18 @@ impl EdgeSource<'_> {
             crossing.x = (crossing.x + (moved.x - before.x)).clamp(-0.5 - left as f64, right - left as f64);
             crossing.y = (crossing.y + (moved.y - before.y)).clamp(-0.5 - top as f64, lower - top as f64);
         }
-        Some((EdgeFit { deviations, systematic, contrast, blur: width, noise, clear_share, on_pixels: 0.0 }, result))
+        let fit = EdgeFit {
+            deviations,
+            systematic,
+            contrast,
+            blur: blur.mean_width(),
+            motion_blur: blur.way(),
+            systematic_by_motion: of_motion,
+            noise,
+            clear_share,
+            on_pixels: 0.0,
+        };
+        Some((fit, result))
     }
 }
 
@@ -230,8 +279,20 @@ fn outward(line: &[Crossing], index: usize) -> Option<Vector2<f64>> {
     Vector2::new(before.y - after.y, after.x - before.x).try_normalize(1e-9)
 }
 
+/// What fits leave of edges of each width, in the median: what is not quite a Gaussian leaves more where it is wide. Of a few edges, what they leave
+/// of all. `None` where there are none.
+fn residuals_of(edges: &[Edge], fit_of: &[usize], fits: usize, all: &[usize]) -> Option<Vec<f64>> {
+    let of_all = median(all.iter().map(|&i| edges[i].residual))?;
+    let of_fit = |fit: usize| {
+        let own = || all.iter().filter(move |&&i| fit_of[i] == fit);
+        let enough = fits == 1 || own().count() >= FEWEST_OF_WIDTH;
+        if enough { median(own().map(|&i| edges[i].residual)).unwrap_or(of_all) } else { of_all }
+    };
+    Some((0..fits).map(of_fit).collect())
+}
+
 /// Takes out edges that lie elsewhere than those around them.
-fn leave_out_strays(edges: &[Edge], is_clear: &mut [bool], farthest: f64) {
+fn leave_out_strays(edges: &[Edge], is_clear: &mut [bool], farthest: impl Fn(usize) -> f64) {
     let count = edges.len();
     let reach = (2 * NEIGHBOURS).min(count / 4);
     let strays: Vec<usize> = (0..count)
@@ -243,7 +304,7 @@ fn leave_out_strays(edges: &[Edge], is_clear: &mut [bool], farthest: f64) {
             // Where they lie no farther apart than that, none does from the one in the middle.
             let [low, high] =
                 around.clone().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)]);
-            high - low > farthest && (edges[i].place - median(around).unwrap_or(0.0)).abs() > farthest
+            high - low > farthest(i) && (edges[i].place - median(around).unwrap_or(0.0)).abs() > farthest(i)
         })
         .collect();
     strays.into_iter().for_each(|i| is_clear[i] = false);
@@ -297,26 +358,43 @@ fn smoothed(places: &[f64], sigma: f64) -> Vec<f64> {
     around.windows(weights.len()).map(mean).collect()
 }
 
-/// How far the edges of a bent outline lie outside of where the middle grey value is: `w^2 / 2` times the curvature.
-fn bends(points: &[Point2<f64>], normals: &[Option<Vector2<f64>>], places: &[f64], width: f64) -> Vec<f64> {
+/// How far the edges of a contour may lie off together that is blurred by this way, of this extent along it, in pixels.
+fn of_long_way(way: f64, extent: f64) -> f64 {
+    if way == 0.0 {
+        return 0.0;
+    }
+    let [longest, hopeless] = LONGEST_WAY;
+    let share = (way / extent - longest) / (hopeless - longest);
+    OF_LONG_WAY * way * share.clamp(0.0, 1.0)
+}
+
+/// How far the edges of a bent outline lie outside of where the middle grey value is: half the variance of the blur along the edge times the
+/// curvature; and how far the part of it that motion has may be off.
+fn bends(points: &[Point2<f64>], normals: &[Option<Vector2<f64>>], places: &[f64], blur: &EdgeBlur) -> (Vec<f64>, f64) {
     let count = points.len();
     let moved = |i: usize| points[i] + places[i] * normals[i].unwrap_or_default();
-    // About 0.77 pixels lie between two crossings.
-    let reach = ((4.0 * width / 0.77).ceil() as usize).clamp(5, 16).min(count / 6).max(1);
     let bend = |i: usize| {
+        let normal = normals[i]?;
+        let [variance, of_motion] = blur.along(&normal);
+        let width = variance.sqrt();
+        // About 0.77 pixels lie between two crossings.
+        let reach = ((4.0 * width / 0.77).ceil() as usize).clamp(5, 16).min(count / 6).max(1);
         let (before, after) = ((i + count - reach) % count, (i + reach) % count);
         if normals[before].is_none() || normals[after].is_none() {
-            return 0.0;
+            return None;
         }
-        let Some(normal) = normals[i] else { return 0.0 };
         let (a, b, p) = (moved(before), moved(after), moved(i));
         let half = 0.5 * (b - a).norm();
         let sagitta = (p - nalgebra::center(&a, &b)).dot(&normal);
         let curvature = 2.0 * sagitta / (half * half + sagitta * sagitta).max(1e-9);
-        0.5 * width * width * curvature.clamp(-0.3 / width, 0.3 / width)
+        let mild = curvature.clamp(-MOST_BENT / width, MOST_BENT / width);
+        let seen = variance - (1.0 - SEEN_OF_BEND) * of_motion;
+        Some([0.5 * seen * mild, 0.5 * of_motion * (curvature.abs() - (1.0 - BEND_UNSURE) * mild.abs())])
     };
-    let bends: Vec<f64> = (0..count).map(bend).collect();
-    smoothed(&bends, 2.0)
+    let (bends, off): (Vec<f64>, Vec<f64>) =
+        (0..count).map(|i| bend(i).unwrap_or_default()).map(|[bend, off]| (bend, off)).unzip();
+    let mean_square = off.iter().map(|off| off * off).sum::<f64>() / count as f64;
+    (smoothed(&bends, 2.0), mean_square.sqrt())
 }
 
 /// Median; `None` of nothing.

@@ -23,11 +23,12 @@ const ROUNDING: f64 = 1.0 / 12.0;
 /// Share of the square of the noise told that is there at least.
 const NOISE_SURE: f64 = 0.8;
 
-/// All of it, for edges fitted like this, with this noise and contrast, from what each edge shows of light that changes on one side, in the
+/// All of it, for edges fitted like these, with this noise and contrast, from what each edge shows of light that changes on one side, in the
 /// order of the contour; pixels. Noise that neighbouring points share has no part in it: it is another one in the next picture.
-pub(super) fn of(fit: &StepFit, noise: f64, contrast: f64, one_sided: impl Iterator<Item = f64>) -> f64 {
-    let of_grey_value = fit.deviation_of_place() / contrast;
-    let parts = [of_grid(fit.width()), of_rounding(noise) * of_grey_value, of_light(one_sided)];
+pub(super) fn of(fits: &[StepFit], noise: f64, contrast: f64, one_sided: impl Iterator<Item = f64>) -> f64 {
+    let most = |of: &dyn Fn(&StepFit) -> f64| fits.iter().map(of).fold(0.0, f64::max);
+    let of_grey_value = most(&StepFit::deviation_of_place) / contrast;
+    let parts = [most(&|fit| of_grid(fit.width())), of_rounding(noise) * of_grey_value, of_light(one_sided)];
     parts.into_iter().fold(0.0, f64::hypot)
 }
 

@@ -309,6 +309,22 @@ fn even_bars_at_the_sides_of_pictures_are_left_out_and_a_plain_ground_is_not() {
 }
 
 #[test]
+fn a_ground_beyond_a_painted_line_is_no_bar() {
+    for line in [4, 30] {
+        let frame = |frame: u32| {
+            let mut picture = picture(frame, |x, y| disc(x, y, [60.0 + 8.0 * f64::from(frame), 90.0, 21.0]));
+            let bar = picture.get_pixel(0, 0).0[0];
+            for (_, row, pixel) in picture.enumerate_pixels_mut().filter(|(_, row, _)| *row < 32 + line) {
+                pixel.0[0] = if row < 32 { bar } else { 240 };
+            }
+            Arc::new(picture)
+        };
+        let pictures: Vec<Arc<GrayImage>> = (0..24).map(frame).collect();
+        assert_eq!(Margins::of_bars(&pictures), Margins::default(), "{line} rows");
+    }
+}
+
+#[test]
 fn an_outline_has_the_same_points_with_margins_and_is_clipped_by_them() {
     let picture = picture(0, |x, y| disc(x, y, [120.0, 90.0, 30.0]));
     let traced = |margins: Margins| {

@@ -184,14 +184,23 @@ fn neither_threshold_nor_shading_moves_an_edge() {
 fn blur_contrast_and_noise_are_told_and_points_have_their_deviations() {
     let step = Step { angle: 1.1, place: -3.0, contrast: 90.0, blur: 1.8, shading: 0.0, noise: 4.0 };
     let traced = step.traced(5, &settings());
-    let EdgeFit { deviations, systematic, contrast, blur, noise, clear_share, on_pixels } =
-        traced.edges.clone().expect("edges");
+    let EdgeFit {
+        deviations,
+        systematic,
+        contrast,
+        blur,
+        motion_blur,
+        systematic_by_motion,
+        noise,
+        clear_share,
+        on_pixels,
+    } = traced.edges.clone().expect("edges");
     assert_eq!(deviations.len(), traced.outline.point_count());
     assert!(
         (contrast - 90.0).abs() < 4.0 && (blur - 1.85).abs() < 0.25 && (noise - 4.0).abs() < 1.2,
         "{contrast} {blur} {noise}"
     );
-    assert!(on_pixels < 0.1, "{on_pixels}");
+    assert!(on_pixels < 0.1 && motion_blur == 0.0 && systematic_by_motion == 0.0, "{on_pixels} {motion_blur}");
     assert!(clear_share > 0.9 && systematic < 0.1, "{clear_share} {systematic}");
     let errors = step.errors(&traced);
     let (spread, typical) = (rms(&errors), median(deviations));
@@ -346,4 +355,57 @@ fn what_the_grid_of_pixels_and_rounding_do_to_edges_along_the_rows_is_stated() {
             }
         }
     }
+}
+
+/// A disc that moves on by a way while the shutter is open, in noise of 2 grey values.
+fn moving_disc(radius: f64, way: f64, direction: f64, seed: u64) -> GrayImage {
+    const TIMES: u32 = 40;
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    GrayImage::from_fn(SIZE, SIZE, |column, row| {
+        let middle = 0.5 * f64::from(SIZE);
+        let (x, y) = (f64::from(column) + 0.5 - middle, f64::from(row) + 0.5 - middle);
+        let share = |time: u32| {
+            let gone = way * ((f64::from(time) + 0.5) / f64::from(TIMES) - 0.5);
+            let inside = radius - (x - gone * direction.cos()).hypot(y - gone * direction.sin());
+            (inside + 0.5).clamp(0.0, 1.0)
+        };
+        let light = (0..TIMES).map(share).sum::<f64>() / f64::from(TIMES);
+        let error: f64 = StandardNormal.sample(&mut rng);
+        Luma([(40.0 + 140.0 * light + 2.0 * error).round().clamp(0.0, 255.0) as u8])
+    })
+}
+
+/// Extents of the outline along a direction and across it, halved.
+fn half_extents(traced: &TracedOutline, direction: f64) -> [f64; 2] {
+    // In pictures y points down.
+    let (sin, cos) = (-direction).sin_cos();
+    [(cos, sin), (-sin, cos)].map(|(x, y)| {
+        let along = || traced.outline.points().map(move |point| x * point.x + y * point.y);
+        0.5 * (along().fold(f64::MIN, f64::max) - along().fold(f64::MAX, f64::min))
+    })
+}
+
+#[test]
+fn a_disc_that_moves_while_the_shutter_is_open_is_as_long_as_it_is_wide() {
+    for (radius, share) in [(15.0, 0.6), (26.0, 0.3), (26.0, 0.6)] {
+        for (seed, direction) in [(0, 0.0), (1, 0.4), (2, 1.3), (3, 2.4)] {
+            let traced = trace_mask(&moving_disc(radius, share * radius, direction, seed), &settings());
+            let traced = traced.expect("a disc");
+            let edges = traced.edges.as_ref().expect("edges");
+            let [along, across] = half_extents(&traced, direction);
+            let (way, systematic) = (edges.motion_blur, edges.systematic_by_motion);
+            let found = format!("{radius} {share} {direction}: {along} {across}, way {way}, systematic {systematic}");
+            assert!((way / (share * radius) - 1.0).abs() < 0.4, "{found}");
+            // Extremes of many points lie beyond, by noise.
+            let off = [along, across].map(|extent| extent - radius);
+            assert!(off.iter().all(|off| off.abs() < 0.02 * radius) && systematic < 0.02 * radius, "{found}");
+        }
+    }
+}
+
+#[test]
+fn a_disc_that_moves_by_more_than_its_radius_meanwhile_is_not_known_well() {
+    let traced = trace_mask(&moving_disc(15.0, 18.0, 0.7, 4), &settings()).expect("a disc");
+    let systematic = traced.edges.expect("edges").systematic_by_motion;
+    assert!(systematic > 1.5, "{systematic}");
 }
