@@ -69,7 +69,7 @@ impl EdgeBlur {
         let mut profiles = Profiles::new(REACH, WIDTHS);
         let rising: Vec<(Vector2<f64>, Vec<f64>)> =
             places.iter().filter_map(|(at, normal)| Some((*normal, profiles.take(source, *at, *normal)?))).collect();
-        let width = profiles.width(rising.iter().map(|(_, profile)| profile.as_slice()))?;
+        let width = profiles.width(&slices(rising.iter().map(|(_, profile)| profile)))?;
         let alike = Self { variance: width * width, by_motion: Vector2::zeros() };
         Some(Self::by_direction(source, &places, &rising, &profiles).unwrap_or(alike))
     }
@@ -94,7 +94,7 @@ impl EdgeBlur {
         let mut widths: Vec<(Vector2<f64>, f64, f64)> = Vec::new();
         for k in enough {
             let mean = own(k).map(|(normal, _)| *normal).sum::<Vector2<f64>>().normalize();
-            let near = profiles.width(own(k).map(|(_, profile)| profile.as_slice()))?;
+            let near = profiles.width(&slices(own(k).map(|(_, profile)| profile)))?;
             let mut width = (near, own(k).count());
             if near >= WIDTHS[1] - WIDTHS[2] {
                 let farther = farther.get_or_insert_with(|| Profiles::new(FARTHER, WIDER));
@@ -102,7 +102,7 @@ impl EdgeBlur {
                 let far: Vec<Vec<f64>> =
                     of_direction.filter_map(|(at, normal)| farther.take(source, *at, *normal)).collect();
                 if far.len() >= FEWEST_PROFILES {
-                    width = (farther.width(far.iter().map(Vec::as_slice))?, far.len());
+                    width = (farther.width(&slices(far.iter()))?, far.len());
                 }
             }
             widths.push((mean, width.0, width.1 as f64));
@@ -237,10 +237,9 @@ impl Profiles {
     }
 
     /// Width of the step that fits the median of profiles best; `None` of none.
-    fn width<'a>(&self, profiles: impl Iterator<Item = &'a [f64]> + Clone) -> Option<f64> {
+    fn width(&self, profiles: &[&[f64]]) -> Option<f64> {
         let count = self.shape.offsets().count();
-        let typical: Option<Vec<f64>> =
-            (0..count).map(|k| median(profiles.clone().map(|profile| profile[k]))).collect();
+        let typical: Option<Vec<f64>> = (0..count).map(|k| median(profiles.iter().map(|profile| profile[k]))).collect();
         let profile = typical?;
         let tried: Vec<f64> = self.steps.iter().map(|step| step.misfit(&profile)).collect();
         let best = (0..tried.len()).min_by(|&a, &b| tried[a].total_cmp(&tried[b]))?;
@@ -265,6 +264,10 @@ impl Step {
         let height = samples().map(|(shape, v)| shape * v).sum::<f64>() / self.square;
         samples().map(|(shape, v)| (v - mean - height * shape).powi(2)).sum::<f64>() / (n - 2.5) / (height * height)
     }
+}
+
+fn slices<'a>(profiles: impl Iterator<Item = &'a Vec<f64>>) -> Vec<&'a [f64]> {
+    profiles.map(Vec::as_slice).collect()
 }
 
 #[cfg(test)]
