@@ -95,13 +95,12 @@ impl MotionFilter {
             // By its own points alone every frame is explained best in a pose beside that which all of them say.
             let is_beside = of_other.displacement_from(&poses[0]) < BESIDE * track.noise().sigma;
             let is_direction = |doubt: Doubt| matches!(doubt, Doubt::Direction { .. });
-            let lies_near = track.turn_to(of_other.body_pose()).abs() < LEAP;
+            let turn = track.turn_to(of_other.body_pose());
+            let (lies_near, may_turn) = (turn.abs() < LEAP, doubt.allows_turn(turn));
             let lies_further = is_direction(doubt) && lies_near && !found.doubt.is_some_and(is_direction);
-            // Where points come off the outline bit by bit, those that tell a direction may be the first: no other turn is right for that.
-            let may_leap = lies_near || !matches!(doubt, Doubt::Direction { disagrees: false, .. });
-            is_explained = may_leap && !is_beside && likelihoods[0].is_worse_by(0.0, &likelihoods[1]);
+            is_explained = may_turn && !is_beside && likelihoods[0].is_worse_by(0.0, &likelihoods[1]);
             let is_better = lies_further && likelihoods[0].is_worse_by_fit(FURTHER_ALONG, &likelihoods[1])
-                || may_leap && likelihoods[0].is_worse_by(ELSEWHERE, &likelihoods[1]);
+                || may_turn && likelihoods[0].is_worse_by(ELSEWHERE, &likelihoods[1]);
             if is_better && !is_beside {
                 other.counts.turned_elsewhere += usize::from(!lies_near && !track.turn_is_unseen());
                 *self = other;

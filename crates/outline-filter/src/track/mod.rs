@@ -34,7 +34,7 @@ mod usual_agreement;
 pub(crate) use body_frame::{of_pose, of_pose_alone};
 pub(crate) use estimate::{TurnOfPose, TurnTold};
 pub use known_outline::{KnownOutline, KnownPiece};
-pub(crate) use outcome::{Comparison, Doubt, Outcome};
+pub(crate) use outcome::{Comparison, Doubt, Outcome, Rise};
 pub(crate) use remapping::PlacedFrame;
 #[cfg(feature = "serde")]
 pub(crate) use saved::SavedCells;

@@ -6,7 +6,7 @@ use crate::{
     dynamics::CentredDeviations,
     map::NullDirections,
     measurement::NegativeLogLikelihood,
-    tuning::usual_agreement::ALL_OF_IT,
+    tuning::usual_agreement::{ALL_OF_IT, FARTHEST_BIT_BY_BIT},
     update::{FrameMeasurement, Gate, PoseInnovation, PoseMeasurement, Rejection},
 };
 
@@ -21,18 +21,41 @@ pub(crate) enum Comparison {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Doubt {
     /// More of the points than usual disagree with the outline.
-    Points,
+    Points { rise: Rise },
     /// Few of the points agree that tell where the outline lies along some direction, as the ends of a bar do.
     Direction {
         /// The [weakest agreement](crate::measurement::View::weakest_agreement).
         weakest: f64,
-        /// Whether more of all points than usual disagree as well.
-        disagrees: bool,
+        /// How more of all points than usual have come to disagree as well, if they do.
+        rise: Option<Rise>,
     },
     /// Some points disagree, and the frame before was not taken: the motion may have changed meanwhile.
     AfterRejected,
     /// A turn that few points or slight levers tell is another than it was to be.
     Turn,
+}
+
+/// How more points than usual have come to disagree with the outline.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Rise {
+    /// In one frame, as where the motion has led elsewhere; also where there were too few frames before to tell.
+    AtOnce,
+    /// Over some frames, as where the motion lags behind, and as of a part that comes off the outline, such as what the light leaves of an object where
+    /// it turns.
+    BitByBit,
+}
+
+impl Doubt {
+    /// Whether the object may be turned by this angle from where it was found, in radians. As far as to another tooth of a gear or another blade no
+    /// motion has led bit by bit; but any of them that turns to where a part was missed in the first frame explains a frame better, turned back.
+    pub(crate) fn allows_turn(self, angle: f64) -> bool {
+        match self {
+            Self::Points { rise: Rise::BitByBit } | Self::Direction { rise: None | Some(Rise::BitByBit), .. } => {
+                angle.abs() < FARTHEST_BIT_BY_BIT
+            }
+            Self::Points { .. } | Self::Direction { .. } | Self::AfterRejected | Self::Turn => true,
+        }
+    }
 }
 
 /// What became of a frame.

@@ -3,7 +3,7 @@
 //! Where a body shows its turn, or its place along itself, by a small part of its outline only, such as the notch of a disc or the ends of a bar,
 //! a prediction that misses this part makes outliers of its points. All others agree, and the pose goes on as predicted, for ever. A share of points
 //! that disagree which is larger than usual says so.
-use super::{Doubt, Track};
+use super::{Doubt, Rise, Track};
 use crate::{measurement::Frame, tuning::usual_agreement as tuning, update::Gate};
 
 /// How far the points of most of the frames agree.
@@ -28,10 +28,9 @@ impl Default for UsualAgreement {
 }
 
 impl UsualAgreement {
-    /// Updates the usual share by a frame of so many points with a share that disagrees; whether that is significantly more than usual, and than
-    /// in the frame before. A share that grows bit by bit is of a part that comes off the outline, as what the light leaves of an object does where
-    /// it turns, and of no motion that has led elsewhere.
-    fn update(&mut self, disagreeing: f64, points: usize, shown: TurnShown) -> bool {
+    /// Updates the usual share by a frame of so many points with a share that disagrees; whether that is significantly more than usual, and how the
+    /// share has come to be so.
+    fn update(&mut self, disagreeing: f64, points: usize, shown: TurnShown) -> Option<Rise> {
         let is_known = self.frames >= tuning::FEWEST_FRAMES;
         let usual = self.disagreeing;
         let points = points.max(1) as f64;
@@ -46,11 +45,16 @@ impl UsualAgreement {
             let deviation = (than.max(1.0 / points) * (1.0 - than) / points).sqrt();
             disagreeing > than + significant * deviation
         };
-        let is_in_doubt = (is_known || shown == TurnShown::ByFew) && is_more(usual) && is_more(self.last_disagreeing);
-        if !is_in_doubt {
+        let rise = if self.frames < tuning::FRAMES_OF_RISE || is_more(self.last_disagreeing) {
+            Rise::AtOnce
+        } else {
+            Rise::BitByBit
+        };
+        let is_in_doubt = (is_known || shown == TurnShown::ByFew) && is_more(usual);
+        if !is_in_doubt || rise == Rise::BitByBit {
             self.last_disagreeing = disagreeing;
         }
-        is_in_doubt
+        is_in_doubt.then_some(rise)
     }
 
     /// Updates the mean share of points that disagree in runs by that of the frame that was taken last.
@@ -84,11 +88,11 @@ impl Track {
     /// elsewhere, if it may.
     pub(super) fn doubt_of_agreement(&mut self, agreement: f64, weakest: Option<f64>, points: usize) -> Option<Doubt> {
         let shown = if self.map.is_all_but_round() { TurnShown::ByFew } else { TurnShown::ByMany };
-        let disagrees = self.usual.update(disagreeing(agreement), points, shown);
+        let rise = self.usual.update(disagreeing(agreement), points, shown);
         if let Some(weakest) = weakest.filter(|weakest| self.usual.update_weakest(*weakest)) {
-            return Some(Doubt::Direction { weakest, disagrees });
+            return Some(Doubt::Direction { weakest, rise });
         }
-        disagrees.then_some(Doubt::Points)
+        rise.map(|rise| Doubt::Points { rise })
     }
 
     /// Takes how many of the points of an accepted frame, which have been measured, disagree in runs: a part of an object that moves by itself does,
@@ -122,7 +126,7 @@ impl Track {
     /// Records how far the points agree of a frame in doubt as nearer to what is usual: nothing else explains them better.
     pub(crate) fn record_as_usual(&mut self, agreement: f64, doubt: Doubt) {
         match doubt {
-            Doubt::Points => {
+            Doubt::Points { .. } => {
                 let more = disagreeing(agreement) - self.usual.disagreeing;
                 self.usual.disagreeing += tuning::UNEXPLAINED * more.max(0.0);
                 self.usual.last_disagreeing = disagreeing(agreement);
@@ -159,8 +163,8 @@ mod tests {
     #[test]
     fn few_marks_that_tell_the_turn_are_missed_from_the_first_frame_on() {
         let first = |share: f64, shown: TurnShown| UsualAgreement::default().update(share, 300, shown);
-        assert!(first(0.05, TurnShown::ByFew) && !first(0.05, TurnShown::ByMany));
-        assert!(!first(0.005, TurnShown::ByFew));
+        assert!(first(0.05, TurnShown::ByFew).is_some() && first(0.05, TurnShown::ByMany).is_none());
+        assert_eq!(first(0.005, TurnShown::ByFew), None);
     }
 
     #[test]
@@ -176,11 +180,12 @@ mod tests {
     }
 
     #[test]
-    fn points_that_come_off_the_outline_bit_by_bit_raise_no_doubt_and_as_many_at_once_do() {
+    fn points_that_come_off_the_outline_bit_by_bit_are_told_from_as_many_at_once() {
         let mut usual = UsualAgreement::default();
         let share = |frame: i32| 0.01 + 0.005 * f64::from((frame - 10).clamp(0, 30));
-        assert!((0..60).all(|frame| !usual.update(share(frame), 400, TurnShown::ByMany)));
-        assert!(usual.update(share(60) + 0.16, 400, TurnShown::ByMany));
+        let mut raised = (0..60).filter_map(|frame| usual.update(share(frame), 400, TurnShown::ByMany)).peekable();
+        assert!(raised.peek().is_some() && raised.all(|rise| rise == Rise::BitByBit));
+        assert_eq!(usual.update(share(60) + 0.16, 400, TurnShown::ByMany), Some(Rise::AtOnce));
     }
 
     #[test]
@@ -188,7 +193,7 @@ mod tests {
         let mut usual = UsualAgreement::default();
         let noticed = |usual: &mut UsualAgreement, share: f64, frames: i32| {
             (0..frames)
-                .filter(|i| usual.update(share + if i % 2 == 0 { 0.01 } else { -0.01 }, 400, TurnShown::ByMany))
+                .filter_map(|i| usual.update(share + if i % 2 == 0 { 0.01 } else { -0.01 }, 400, TurnShown::ByMany))
                 .count()
         };
         assert_eq!(noticed(&mut usual, 0.05, 100), 0);

@@ -211,6 +211,11 @@ pub(crate) mod usual_agreement {
     pub(crate) const SIGNIFICANT: f64 = 5.0;
     /// As that, where few of the points tell the turn: four of 300 that are off by chance are searched for once or twice.
     pub(crate) const SIGNIFICANT_OF_FEW: f64 = 3.0;
+    /// Frames from which on it is told whether points have come to disagree bit by bit: what few have said of the motion may be wrong by any turn.
+    pub(crate) const FRAMES_OF_RISE: usize = 10;
+    /// Turn that a motion which lags behind may have led away by, rad, before its points are seen to disagree: less than from one blade or tooth to the
+    /// next of all but the finest.
+    pub(crate) const FARTHEST_BIT_BY_BIT: f64 = 0.3;
     /// Shares by which a frame corrects what is usual where its points agree better than that, and where they agree worse: frames in which a part has
     /// been missed must not become the usual ones.
     pub(crate) const TOWARDS_BETTER: f64 = 0.2;
