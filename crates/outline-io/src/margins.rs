@@ -121,10 +121,8 @@ fn bar(pictures: &[Arc<GrayImage>], (rows, columns): (u32, u32), at: impl Fn(u32
     let ends = |picture: &&Arc<GrayImage>| differs(picture, beside, OTHER) as f64 >= ALONG * f64::from(columns);
     let are_most = |count: usize| 8 * count >= OF_EIGHT * pictures.len();
     let goes_on = |row: u32| {
-        let is_ground = |picture: &&Arc<GrayImage>| {
-            let other = differs(picture, row, EVEN);
-            other as f64 <= (1.0 - GROUND) * f64::from(columns)
-        };
+        let is_ground =
+            |picture: &&Arc<GrayImage>| differs(picture, row, EVEN) as f64 <= (1.0 - GROUND) * f64::from(columns);
         are_most(pictures.iter().filter(is_ground).count())
     };
     if !are_most(pictures.iter().filter(ends).count()) || has_run((beside..rows / 2).map(goes_on)) {
@@ -138,9 +136,9 @@ fn bar(pictures: &[Arc<GrayImage>], (rows, columns): (u32, u32), at: impl Fn(u32
 }
 
 /// Whether as many in a row are true as a bar has rows at least.
-fn has_run(rows: impl Iterator<Item = bool>) -> bool {
+fn has_run(mut rows: impl Iterator<Item = bool>) -> bool {
     let mut run = 0;
-    rows.into_iter().any(|is_true| {
+    rows.any(|is_true| {
         run = if is_true { run + 1 } else { 0 };
         run >= FEWEST
     })

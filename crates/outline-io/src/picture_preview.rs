@@ -8,7 +8,7 @@ use crate::{
     background::Background,
     channel::Channel,
     choice::{PictureSample, SamplePlan, TracingChoice, choose_tracing},
-    edges::EdgeFit,
+    edges::{EdgeFit, median},
     flat_bodies::level_of_missed,
     ground_picture::ground_picture,
     identity::Selection,
@@ -246,16 +246,15 @@ impl PicturePreview {
         };
         let outlines = largest.iter().take(EDGES_LOOKED_AT).flat_map(|traced| traced.objects.iter().flatten());
         let edges: Vec<&EdgeFit> = outlines.filter_map(|(_, traced)| traced.edges.as_ref()).collect();
-        let at = |share: f64, mut lengths: Vec<f64>| {
-            lengths.sort_by(f64::total_cmp);
-            lengths.get((share * lengths.len() as f64) as usize).copied()
-        };
-        let usual = at(0.5, edges.iter().map(|fit| fit.systematic).collect())?;
+        let usual = median(edges.iter().map(|fit| fit.systematic))?;
         // Blur by motion comes and goes with the speed: what it makes of edges is there for the pictures that have it, if it is seen in some.
-        let by_motion: Vec<f64> =
+        let mut by_motion: Vec<f64> =
             edges.iter().filter(|fit| fit.motion_blur > 0.0).map(|fit| fit.systematic_by_motion).collect();
-        let is_seen = 3 * by_motion.len() >= edges.len();
-        let by_motion = at(BLURRED_UP_TO, by_motion).filter(|_| is_seen).unwrap_or(0.0);
+        if 3 * by_motion.len() < edges.len() {
+            by_motion.clear();
+        }
+        by_motion.sort_by(f64::total_cmp);
+        let by_motion = by_motion.get((BLURRED_UP_TO * by_motion.len() as f64) as usize).copied().unwrap_or(0.0);
         Some(OutlineUncertainty::Edges(usual.hypot(by_motion)))
     }
 

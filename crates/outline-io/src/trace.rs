@@ -323,9 +323,7 @@ impl EdgeFit {
     /// Appends the deviations of the points of another contour by its own fit, if any. Smaller contours are off by more where motion blurs them.
     fn append(&mut self, fit: Option<EdgeFit>, contour: &[Point2<f64>], settings: &TraceSettings, is_open: bool) {
         let unknown = self.deviations.iter().copied().fold(0.0, f64::max);
-        let around: f64 = contour.iter().zip(contour.iter().cycle().skip(1)).map(|(a, b)| (b - a).norm()).sum();
-        let area = AreaAndCentre::of(&contour.iter().copied()).signed_area.abs();
-        let by_motion = self.off_by_motion(4.0 * area / (around * settings.pixel_size));
+        let by_motion = self.off_by_motion(contour, settings.pixel_size);
         let of_fit = fit.as_ref().map_or(0.0, |fit| fit.systematic_by_motion);
         self.systematic_by_motion = self.systematic_by_motion.max(settings.pixel_size * of_fit.max(by_motion));
         let mut deviations = fit.map_or_else(|| vec![unknown; contour.len()], |fit| fit.deviations);

@@ -14,7 +14,7 @@ pub(super) struct UsualAgreement {
     disagreeing: f64,
     /// The [weakest agreement](crate::measurement::View::weakest_agreement).
     weakest: f64,
-    /// Share of the points that disagree in the last frame which raised no doubt by it.
+    /// Share of the points that disagree in the last frame, but for those in doubt for a share that has risen at once.
     last_disagreeing: f64,
     /// Mean share of the points that disagree together with both of their neighbours, over the last frames.
     in_runs: f64,

@@ -1,10 +1,11 @@
 //! How wide the edges of a contour are: alike in all directions by the optics, wider across the path of a body that moves while the shutter is open.
 use std::f64::consts::TAU;
+use std::sync::LazyLock;
 
 use nalgebra::{Matrix3, Point2, Vector2, Vector3};
 
 use super::sampler::Sampler;
-use super::step_fit::{StepFit, normal_distribution};
+use super::step_fit::{Offsets, SPACING, normal_distribution};
 use super::{Edge, median};
 
 /// Points whose profiles tell the width.
@@ -40,6 +41,13 @@ const KNOWN_TO: f64 = 0.03;
 /// Share of the weight of all profiles that directions which none of them tells are held at no difference by.
 const HELD_BY: f64 = 1e-3;
 
+/// Profiles of edges that rise inwards, with their normals.
+type Rising = Vec<(Vector2<f64>, Vec<f64>)>;
+
+/// Profiles at first, and where edges are too wide for these.
+static NEAR: LazyLock<Profiles> = LazyLock::new(|| Profiles::new(REACH, WIDTHS));
+static FAR: LazyLock<Profiles> = LazyLock::new(|| Profiles::new(FARTHER, WIDER));
+
 /// The blur of the edges of a contour.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct EdgeBlur {
@@ -66,43 +74,38 @@ impl EdgeBlur {
             .step_by(step)
             .filter_map(|&i| normals[i].map(|normal| (points[i] + edges[i].place * normal, normal)))
             .collect();
-        let mut profiles = Profiles::new(REACH, WIDTHS);
-        let rising: Vec<(Vector2<f64>, Vec<f64>)> =
-            places.iter().filter_map(|(at, normal)| Some((*normal, profiles.take(source, *at, *normal)?))).collect();
-        let width = profiles.width(&slices(rising.iter().map(|(_, profile)| profile)))?;
+        let mut values = Vec::new();
+        let mut rising = Rising::default();
+        for &(at, normal) in &places {
+            rising.extend(NEAR.take(source, at, normal, &mut values).map(|profile| (normal, profile)));
+        }
+        let width = NEAR.width(rising.iter().map(|(_, profile)| profile.as_slice()))?;
         let alike = Self { variance: width * width, by_motion: Vector2::zeros() };
-        Some(Self::by_direction(source, &places, &rising, &profiles).unwrap_or(alike))
+        Some(Self::by_direction(source, &places, &rising).unwrap_or(alike))
     }
 
     /// By the widths of edges of several directions; `None` where they do not differ clearly.
-    fn by_direction(
-        source: &Sampler,
-        places: &[(Point2<f64>, Vector2<f64>)],
-        rising: &[(Vector2<f64>, Vec<f64>)],
-        profiles: &Profiles,
-    ) -> Option<Self> {
-        let direction = |normal: &Vector2<f64>| {
-            let turns = normal.y.atan2(normal.x).rem_euclid(TAU) / TAU;
-            (turns * DIRECTIONS as f64) as usize % DIRECTIONS
-        };
-        let own = |k: usize| rising.iter().filter(move |(normal, _)| direction(normal) == k);
-        let enough: Vec<usize> = (0..DIRECTIONS).filter(|&k| own(k).count() >= FEWEST_PROFILES).collect();
-        if enough.len() < FEWEST_DIRECTIONS {
+    fn by_direction(source: &Sampler, places: &[(Point2<f64>, Vector2<f64>)], rising: &Rising) -> Option<Self> {
+        let mut of_direction: [Vec<&(Vector2<f64>, Vec<f64>)>; DIRECTIONS] = Default::default();
+        for edge in rising {
+            of_direction[direction(&edge.0)].push(edge);
+        }
+        let enough = || (0..DIRECTIONS).filter(|&k| of_direction[k].len() >= FEWEST_PROFILES);
+        if enough().count() < FEWEST_DIRECTIONS {
             return None;
         }
-        let mut farther = None;
+        let mut values = Vec::new();
         let mut widths: Vec<(Vector2<f64>, f64, f64)> = Vec::new();
-        for k in enough {
-            let mean = own(k).map(|(normal, _)| *normal).sum::<Vector2<f64>>().normalize();
-            let near = profiles.width(&slices(own(k).map(|(_, profile)| profile)))?;
-            let mut width = (near, own(k).count());
-            if near >= WIDTHS[1] - WIDTHS[2] {
-                let farther = farther.get_or_insert_with(|| Profiles::new(FARTHER, WIDER));
-                let of_direction = places.iter().filter(|(_, normal)| direction(normal) == k);
+        for k in enough() {
+            let own = &of_direction[k];
+            let mean = own.iter().map(|(normal, _)| *normal).sum::<Vector2<f64>>().normalize();
+            let mut width = (NEAR.width(own.iter().map(|(_, profile)| profile.as_slice()))?, own.len());
+            if width.0 >= WIDTHS[1] - WIDTHS[2] {
+                let again = places.iter().filter(|(_, normal)| direction(normal) == k);
                 let far: Vec<Vec<f64>> =
-                    of_direction.filter_map(|(at, normal)| farther.take(source, *at, *normal)).collect();
+                    again.filter_map(|(at, normal)| FAR.take(source, *at, *normal, &mut values)).collect();
                 if far.len() >= FEWEST_PROFILES {
-                    width = (farther.width(&slices(far.iter()))?, far.len());
+                    width = (FAR.width(far.iter().map(Vec::as_slice))?, far.len());
                 }
             }
             widths.push((mean, width.0, width.1 as f64));
@@ -186,18 +189,23 @@ impl EdgeBlur {
     }
 }
 
-/// Profiles across edges, as far as they reach, between the grey values of the two sides, and the steps that they are compared with.
+/// Of the directions that are looked at apart, that of a normal.
+fn direction(normal: &Vector2<f64>) -> usize {
+    let turns = normal.y.atan2(normal.x).rem_euclid(TAU) / TAU;
+    (turns * DIRECTIONS as f64) as usize % DIRECTIONS
+}
+
+/// How profiles across edges are taken, between the grey values of the two sides, and the steps that they are compared with.
 struct Profiles {
-    shape: StepFit,
-    values: Vec<f64>,
+    offsets: Offsets,
     /// Samples from the middle to those that tell the grey values of a side, and to the end of these.
     side: [usize; 2],
-    steps: Vec<Step>,
+    steps: Vec<StepOfWidth>,
     between_widths: f64,
 }
 
 /// A step of some width.
-struct Step {
+struct StepOfWidth {
     width: f64,
     /// Its samples, from the first on that is near enough.
     first: usize,
@@ -209,36 +217,42 @@ struct Step {
 impl Profiles {
     /// Of this reach, for these widths.
     fn new(reach: f64, [least, most, between]: [f64; 3]) -> Self {
-        let shape = StepFit::new(1.0, reach);
+        let offsets = Offsets::within((reach / SPACING) as usize);
         // Levels by what lies beyond the edge, near enough to be of the same two sides.
         let side = [3.0 * reach / REACH, 7.0 * reach / REACH].map(|samples: f64| samples.round() as usize);
-        let [_, end] = shape.offsets().ends();
         let widths = (0..).map(|k| least + between * f64::from(k)).take_while(|width| *width <= most);
         let step = |width: f64| {
-            let is_near = |s: f64| s.abs() <= (2.0 * width + 1.0).min(end);
-            let first = shape.offsets().iter().take_while(|s| !is_near(*s)).count();
-            let near = shape.offsets().iter().filter(|s| is_near(*s));
+            let is_near = |s: f64| s.abs() <= (2.0 * width + 1.0).min(reach);
+            let first = offsets.iter().take_while(|s| !is_near(*s)).count();
+            let near = offsets.iter().filter(|s| is_near(*s));
             let samples: Vec<f64> = near.map(|s| 0.5 - normal_distribution(s / width)).collect();
-            Step { width, first, square: samples.iter().map(|shape| shape.powi(2)).sum(), samples }
+            StepOfWidth { width, first, square: samples.iter().map(|shape| shape.powi(2)).sum(), samples }
         };
         let steps = widths.map(step).collect();
-        Self { shape, values: Vec::new(), side, steps, between_widths: between }
+        Self { offsets, side, steps, between_widths: between }
     }
 
-    /// That of an edge; `None` where it does not rise inwards.
-    fn take(&mut self, source: &Sampler, place: Point2<f64>, normal: Vector2<f64>) -> Option<Vec<f64>> {
-        let Self { shape, values, side: [near, far], .. } = self;
-        source.profile(place, normal, shape.offsets(), values);
+    /// That of an edge; `None` where it does not rise inwards. Its grey values are put into `values`.
+    fn take(
+        &self,
+        source: &Sampler,
+        place: Point2<f64>,
+        normal: Vector2<f64>,
+        values: &mut Vec<f64>,
+    ) -> Option<Vec<f64>> {
+        let [near, far] = self.side;
+        source.profile(place, normal, &self.offsets, values);
         let middle = values.len() / 2;
         let level = |range: std::ops::Range<usize>| values[range.clone()].iter().sum::<f64>() / range.len() as f64;
-        let inner = level(middle - *far..middle - *near);
-        let outer = level(middle + *near + 1..middle + *far + 1);
+        let inner = level(middle - far..middle - near);
+        let outer = level(middle + near + 1..middle + far + 1);
         (inner > outer).then(|| values.iter().map(|v| (v - outer) / (inner - outer)).collect())
     }
 
     /// Width of the step that fits the median of profiles best; `None` of none.
-    fn width(&self, profiles: &[&[f64]]) -> Option<f64> {
-        let count = self.shape.offsets().count();
+    fn width<'a>(&self, profiles: impl Iterator<Item = &'a [f64]>) -> Option<f64> {
+        let profiles: Vec<&[f64]> = profiles.collect();
+        let count = self.offsets.count();
         let typical: Option<Vec<f64>> = (0..count).map(|k| median(profiles.iter().map(|profile| profile[k]))).collect();
         let profile = typical?;
         let tried: Vec<f64> = self.steps.iter().map(|step| step.misfit(&profile)).collect();
@@ -255,7 +269,7 @@ impl Profiles {
     }
 }
 
-impl Step {
+impl StepOfWidth {
     /// Mean square of what it leaves of a profile, in shares of its height.
     fn misfit(&self, profile: &[f64]) -> f64 {
         let samples = || self.samples.iter().zip(&profile[self.first..]);
@@ -264,10 +278,6 @@ impl Step {
         let height = samples().map(|(shape, v)| shape * v).sum::<f64>() / self.square;
         samples().map(|(shape, v)| (v - mean - height * shape).powi(2)).sum::<f64>() / (n - 2.5) / (height * height)
     }
-}
-
-fn slices<'a>(profiles: impl Iterator<Item = &'a Vec<f64>>) -> Vec<&'a [f64]> {
-    profiles.map(Vec::as_slice).collect()
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 //! sides, blurred by a Gaussian. With the place `e` of the step come its own height `c` and middle `m`, so that neither a threshold
 //! nor a shading moves it. The width `w` is one for a contour, or goes with the direction of the edge where the body
 //! moves while the shutter is open.
+mod bends;
 mod blur_width;
 mod crossings;
 mod edge_profile;
@@ -22,7 +23,7 @@ use crate::tracing_input::GroundComparison;
 use crate::transfer::Transfer;
 pub use edge_profile::{EdgeProfile, SoughtEdges};
 
-use blur_width::EdgeBlur;
+use bends::{bends, of_long_way};
 use crossings::{Moved, undo_crossings};
 use fitting::Fitted;
 use sampler::Sampler;
@@ -57,19 +58,6 @@ const INTERPOLATED_NOISE: f64 = 2.0 / 3.0;
 /// Part of the deviation of a single point beside its noise, in pixels: bends, corners and the grid. What a whole side is off by does not tell
 /// which of its points count for more, and from picture to picture it is known too roughly to weigh one against the other.
 pub(crate) const OF_POINT: f64 = 0.01;
-
-/// Bends of more than this over the width of the edge move it by less than the first order says.
-const MOST_BENT: f64 = 0.3;
-
-/// Where an edge is seen among what the motion spreads, as a share of the mean, and how far that may be off: most of it is near one end. Measured on
-/// discs that move by 0.3 to 0.9 of their radius.
-const SEEN_OF_BEND: f64 = 0.55;
-const BEND_UNSURE: f64 = 0.2;
-
-/// Share of its extent along the path that a body may move by while the shutter is open for its shape to be told, of a disc 0.7 of the radius, and
-/// from which on it is not told. There its edges may be off by this share of the way.
-const LONGEST_WAY: [f64; 2] = [0.35, 0.42];
-const OF_LONG_WAY: f64 = 0.2;
 
 /// Edges of one width whose residuals have a median of their own, to a fifth of it.
 const FEWEST_OF_WIDTH: usize = 24;
@@ -118,12 +106,6 @@ impl EdgeFit {
     #[must_use]
     pub fn is_on_pixels(&self) -> bool {
         self.on_pixels > MOST_ON_PIXELS
-    }
-
-    /// How far edges of another contour of the object may lie off together, as wide as this in pixels, as motion blurs them: what is too small for
-    /// the way shows no edges of its own.
-    pub(crate) fn off_by_motion(&self, extent: f64) -> f64 {
-        of_long_way(self.motion_blur, extent)
     }
 
     /// With what such edges are off by, if they are: a side may lie off by half a pixel either way.
@@ -189,7 +171,8 @@ impl EdgeSource<'_> {
             return None;
         }
         let noise = residual / INTERPOLATED_NOISE;
-        let farthest = |i: usize| FARTHEST[0] + FARTHEST[1] * fits[fit_of[i]].width();
+        let within = |[pixels, widths]: [f64; 2], i: usize| pixels + widths * fits[fit_of[i]].width();
+        let farthest = |i: usize| within(FARTHEST, i);
         let smallest: Vec<f64> = fits
             .iter()
             .zip(&residuals)
@@ -202,9 +185,7 @@ impl EdgeSource<'_> {
                 own(&i) && place.abs() <= farthest(i) && is_step
             })
             .collect();
-        let from_neighbours =
-            |i: usize| FARTHEST_FROM_NEIGHBOURS[0] + FARTHEST_FROM_NEIGHBOURS[1] * fits[fit_of[i]].width();
-        leave_out_strays(&edges, &mut is_clear, from_neighbours);
+        leave_out_strays(&edges, &mut is_clear, |i| within(FARTHEST_FROM_NEIGHBOURS, i));
         let clear_share = is_clear.iter().filter(|clear| **clear).count() as f64 / all.len().max(1) as f64;
         let places = bridged(&edges, &is_clear)?;
         let places = smoothed(&places, self.along);
@@ -285,8 +266,8 @@ fn residuals_of(edges: &[Edge], fit_of: &[usize], fits: usize, all: &[usize]) ->
     let of_all = median(all.iter().map(|&i| edges[i].residual))?;
     let of_fit = |fit: usize| {
         let own = || all.iter().filter(move |&&i| fit_of[i] == fit);
-        let enough = fits == 1 || own().count() >= FEWEST_OF_WIDTH;
-        if enough { median(own().map(|&i| edges[i].residual)).unwrap_or(of_all) } else { of_all }
+        let known = (own().count() >= FEWEST_OF_WIDTH).then(|| median(own().map(|&i| edges[i].residual)));
+        known.flatten().unwrap_or(of_all)
     };
     Some((0..fits).map(of_fit).collect())
 }
@@ -356,45 +337,6 @@ fn smoothed(places: &[f64], sigma: f64) -> Vec<f64> {
     let around: Vec<f64> = before.iter().chain(places).chain(after).copied().collect();
     let mean = |window: &[f64]| window.iter().zip(&weights).map(|(place, weight)| weight * place).sum::<f64>() / total;
     around.windows(weights.len()).map(mean).collect()
-}
-
-/// How far the edges of a contour may lie off together that is blurred by this way, of this extent along it, in pixels.
-fn of_long_way(way: f64, extent: f64) -> f64 {
-    if way == 0.0 {
-        return 0.0;
-    }
-    let [longest, hopeless] = LONGEST_WAY;
-    let share = (way / extent - longest) / (hopeless - longest);
-    OF_LONG_WAY * way * share.clamp(0.0, 1.0)
-}
-
-/// How far the edges of a bent outline lie outside of where the middle grey value is: half the variance of the blur along the edge times the
-/// curvature; and how far the part of it that motion has may be off.
-fn bends(points: &[Point2<f64>], normals: &[Option<Vector2<f64>>], places: &[f64], blur: &EdgeBlur) -> (Vec<f64>, f64) {
-    let count = points.len();
-    let moved = |i: usize| points[i] + places[i] * normals[i].unwrap_or_default();
-    let bend = |i: usize| {
-        let normal = normals[i]?;
-        let [variance, of_motion] = blur.along(&normal);
-        let width = variance.sqrt();
-        // About 0.77 pixels lie between two crossings.
-        let reach = ((4.0 * width / 0.77).ceil() as usize).clamp(5, 16).min(count / 6).max(1);
-        let (before, after) = ((i + count - reach) % count, (i + reach) % count);
-        if normals[before].is_none() || normals[after].is_none() {
-            return None;
-        }
-        let (a, b, p) = (moved(before), moved(after), moved(i));
-        let half = 0.5 * (b - a).norm();
-        let sagitta = (p - nalgebra::center(&a, &b)).dot(&normal);
-        let curvature = 2.0 * sagitta / (half * half + sagitta * sagitta).max(1e-9);
-        let mild = curvature.clamp(-MOST_BENT / width, MOST_BENT / width);
-        let seen = variance - (1.0 - SEEN_OF_BEND) * of_motion;
-        Some([0.5 * seen * mild, 0.5 * of_motion * (curvature.abs() - (1.0 - BEND_UNSURE) * mild.abs())])
-    };
-    let (bends, off): (Vec<f64>, Vec<f64>) =
-        (0..count).map(|i| bend(i).unwrap_or_default()).map(|[bend, off]| (bend, off)).unzip();
-    let mean_square = off.iter().map(|off| off * off).sum::<f64>() / count as f64;
-    (smoothed(&bends, 2.0), mean_square.sqrt())
 }
 
 /// Median; `None` of nothing.

@@ -63,7 +63,7 @@ impl Step {
 }
 
 /// The share of a normal distribution beyond `z`.
-pub(crate) fn tail(z: f64) -> f64 {
+fn tail(z: f64) -> f64 {
     let x = z.abs() / std::f64::consts::SQRT_2;
     let t = 1.0 / (1.0 + 0.5 * x);
     let series = [
@@ -357,19 +357,22 @@ fn what_the_grid_of_pixels_and_rounding_do_to_edges_along_the_rows_is_stated() {
     }
 }
 
+/// Share of the light of a disc, blurred by 0.8 pixels, that a place from its middle gets while the disc moves on by a way.
+pub(crate) fn share_of_moving_disc([x, y]: [f64; 2], radius: f64, [across, down]: [f64; 2]) -> f64 {
+    let instants = 4 * across.hypot(down).ceil() as u32 + 1;
+    let share = |k: u32| {
+        let gone = (f64::from(k) + 0.5) / f64::from(instants) - 0.5;
+        tail(((x - across * gone).hypot(y - down * gone) - radius) / 0.8)
+    };
+    (0..instants).map(share).sum::<f64>() / f64::from(instants)
+}
+
 /// A disc that moves on by a way while the shutter is open, in noise of 2 grey values.
 fn moving_disc(radius: f64, way: f64, direction: f64, seed: u64) -> GrayImage {
-    const TIMES: u32 = 40;
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     GrayImage::from_fn(SIZE, SIZE, |column, row| {
-        let middle = 0.5 * f64::from(SIZE);
-        let (x, y) = (f64::from(column) + 0.5 - middle, f64::from(row) + 0.5 - middle);
-        let share = |time: u32| {
-            let gone = way * ((f64::from(time) + 0.5) / f64::from(TIMES) - 0.5);
-            let inside = radius - (x - gone * direction.cos()).hypot(y - gone * direction.sin());
-            (inside + 0.5).clamp(0.0, 1.0)
-        };
-        let light = (0..TIMES).map(share).sum::<f64>() / f64::from(TIMES);
+        let place = [column, row].map(|pixel| f64::from(pixel) + 0.5 - 0.5 * f64::from(SIZE));
+        let light = share_of_moving_disc(place, radius, [way * direction.cos(), way * direction.sin()]);
         let error: f64 = StandardNormal.sample(&mut rng);
         Luma([(40.0 + 140.0 * light + 2.0 * error).round().clamp(0.0, 255.0) as u8])
     })
@@ -387,7 +390,7 @@ fn half_extents(traced: &TracedOutline, direction: f64) -> [f64; 2] {
 
 #[test]
 fn a_disc_that_moves_while_the_shutter_is_open_is_as_long_as_it_is_wide() {
-    for (radius, share) in [(15.0, 0.45), (26.0, 0.3), (26.0, 0.45)] {
+    for (radius, share) in [(15.0, 0.45), (15.0, 0.6), (26.0, 0.3), (26.0, 0.45), (26.0, 0.6)] {
         for (seed, direction) in [(0, 0.0), (1, 0.4), (2, 1.3), (3, 2.4)] {
             let traced = trace_mask(&moving_disc(radius, share * radius, direction, seed), &settings());
             let traced = traced.expect("a disc");
@@ -398,7 +401,9 @@ fn a_disc_that_moves_while_the_shutter_is_open_is_as_long_as_it_is_wide() {
             assert!((way / (share * radius) - 1.0).abs() < 0.4, "{found}");
             // Extremes of many points lie beyond, by noise.
             let off = [along, across].map(|extent| extent - radius);
-            assert!(off.iter().all(|off| off.abs() < 0.02 * radius) && systematic < 0.02 * radius, "{found}");
+            assert!(off.iter().all(|off| off.abs() < 0.02 * radius), "{found}");
+            // The way is found up to a quarter too long, so that longer ones seem to be too long for the radius.
+            assert!(share > 0.5 || systematic < 0.02 * radius, "{found}");
         }
     }
 }

@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, StandardNormal};
 
 use crate::choice::{choice, noise};
-use crate::edges::tail;
+use crate::edges::share_of_moving_disc;
 
 /// The grey value of a light from 0 to 1, by the transfer function of sRGB.
 fn srgb(light: f64) -> u8 {
@@ -20,14 +20,9 @@ fn srgb(light: f64) -> u8 {
 /// A disc of radius 40 that has moved by `way` pixels to the right while the shutter was open, in a picture of 160 by 120: the mean of its light, from
 /// `ground` to `body`, before it is told as grey values by the transfer function.
 fn moved_disc(way: f64, [ground, body]: [f64; 2]) -> GrayImage {
-    let instants = 4 * way.ceil() as u32 + 1;
     GrayImage::from_fn(160, 120, |column, row| {
-        let share = (0..instants).map(|k| {
-            let shift = way * ((f64::from(k) + 0.5) / f64::from(instants) - 0.5);
-            let distance = (f64::from(column) + 0.5 - 80.3 - shift).hypot(f64::from(row) + 0.5 - 60.1) - 40.0;
-            tail(distance / 0.8)
-        });
-        let share = share.sum::<f64>() / f64::from(instants);
+        let place = [f64::from(column) + 0.5 - 80.3, f64::from(row) + 0.5 - 60.1];
+        let share = share_of_moving_disc(place, 40.0, [way, 0.0]);
         Luma([srgb(ground + share * (body - ground))])
     })
 }
