@@ -1,14 +1,15 @@
+//! Why outlines could not be read, and where in a file.
 use std::fmt;
 use std::io;
 
 use freeform_curve_fit::OutlineError;
 use thiserror::Error;
 
-use crate::column::Column;
 use crate::file_name::readable;
-use crate::header_hint::header_hint;
-use crate::picture_error::{PictureError, TraceError};
-use crate::polygon_error::PolygonError;
+use crate::picture_file::error::{PictureError, TraceError};
+use crate::polygon_file::error::PolygonError;
+use crate::table::column::Column;
+use crate::table::header_hint::header_hint;
 
 /// Where in a file something is wrong. Displays as `name:12: column x`, `name:12-40`, `name: row 7: column x` or `name`.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,3 +1,4 @@
+//! Names of files as they may be shown.
 use std::fmt;
 
 /// Text of others as it may be shown: what is no visible character is written as an escape sequence such as `\\n` or

@@ -1,3 +1,4 @@
+//! One outline of one object, with its frame and time.
 use freeform_curve_fit::Outline;
 
 /// Name of the object where a file has no `object` column.

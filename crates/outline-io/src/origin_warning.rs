@@ -1,3 +1,4 @@
+//! What the program that found outlines had to say of them.
 use std::fmt;
 
 use crate::choice::TracingWarning;

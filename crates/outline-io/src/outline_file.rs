@@ -3,12 +3,14 @@ use std::fs::File;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
-use crate::csv_writer::{OutlineWriter, WriterOptions};
+use crate::csv_file::writer::{OutlineWriter, WriterOptions};
 use crate::error::{Place, ReadError, ReadErrorKind};
 use crate::frame::OutlineFrame;
 use crate::origin_warning::OriginWarnings;
-use crate::polygon_error::PolygonError;
-use crate::polygons::{FILE_LIMIT, PolygonOutlines, PolygonSettings, begins_like_polygons, failed, read_polygons};
+use crate::polygon_file::error::PolygonError;
+use crate::polygon_file::polygons::{
+    FILE_LIMIT, PolygonOutlines, PolygonSettings, begins_like_polygons, failed, read_polygons,
+};
 use crate::write_error::WriteError;
 
 /// Formats in which outlines are written.
@@ -44,7 +46,7 @@ pub struct TableWriter<W: Write>(Kind<W>);
 enum Kind<W: Write> {
     Csv(Box<OutlineWriter<W>>),
     #[cfg(feature = "parquet")]
-    Parquet(Box<crate::parquet_writer::ParquetWriter<W>>),
+    Parquet(Box<crate::parquet_file::writer::ParquetWriter<W>>),
 }
 
 impl<W: Write> TableWriter<W> {
@@ -64,9 +66,9 @@ impl<W: Write> TableWriter<W> {
                 Ok(Self(Kind::Csv(Box::new(OutlineWriter::new(sink, options)?))))
             }
             #[cfg(feature = "parquet")]
-            TableFormat::Parquet => {
-                Ok(Self(Kind::Parquet(Box::new(crate::parquet_writer::ParquetWriter::new(sink, options, comments)?))))
-            }
+            TableFormat::Parquet => Ok(Self(Kind::Parquet(Box::new(crate::parquet_file::writer::ParquetWriter::new(
+                sink, options, comments,
+            )?)))),
             #[cfg(not(feature = "parquet"))]
             TableFormat::Parquet => Err(WriteError::ParquetLeftOut),
         }
@@ -126,7 +128,7 @@ pub struct OutlineFile {
 
 enum Outlines {
     #[cfg(feature = "parquet")]
-    Parquet(Box<crate::parquet_reader::ParquetReader>),
+    Parquet(Box<crate::parquet_file::reader::ParquetReader>),
     Polygons(std::vec::IntoIter<Result<OutlineFrame, ReadError>>),
 }
 
@@ -144,7 +146,7 @@ impl OutlineFile {
     pub fn open_parquet(path: &Path) -> Result<Self, ReadError> {
         #[cfg(feature = "parquet")]
         {
-            let reader = crate::parquet_reader::ParquetReader::open(path)?;
+            let reader = crate::parquet_file::reader::ParquetReader::open(path)?;
             let (comments, has_deviation_column) = (reader.comments().to_owned(), reader.has_deviation_column());
             let points = FilePoints::Measured;
             let outlines = Outlines::Parquet(Box::new(reader));

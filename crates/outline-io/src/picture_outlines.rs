@@ -1,3 +1,4 @@
+//! The outlines of the objects of a sequence of pictures, followed from picture to picture.
 use std::borrow::Cow;
 use std::collections::VecDeque;
 use std::panic::resume_unwind;
@@ -7,16 +8,16 @@ use std::time::{Duration, Instant};
 
 use image::GrayImage;
 
-use crate::background::{Background, Difference, RunningMedian};
-use crate::contacts::AfterContact;
-use crate::contrast::Contrast;
-use crate::ground_surface::ground_surface;
-use crate::identity::{AmongAlike, Identities, Selection};
-use crate::picture_error::{PictureError, TraceError};
-use crate::picture_sequence::PictureFrame;
-use crate::trace::{TracedOutline, trace_within};
-use crate::trace_settings::TraceSettings;
-use crate::tracing_input::{GroundComparison, TracingInput};
+use crate::ground::background::{Background, Difference, RunningMedian};
+use crate::ground::ground_surface::ground_surface;
+use crate::identity::contacts::AfterContact;
+use crate::identity::identities::{AmongAlike, Identities, Selection};
+use crate::picture_file::error::{PictureError, TraceError};
+use crate::picture_file::sequence::PictureFrame;
+use crate::tracing::contrast::Contrast;
+use crate::tracing::input::{GroundComparison, TracingInput};
+use crate::tracing::settings::TraceSettings;
+use crate::tracing::trace::{TracedOutline, trace_within};
 
 /// Pixels of the pictures that are traced side by side, at most: two pictures of 1920 x 1080, or one that is larger. What is worked with is some
 /// tens of bytes for each, which a picture of the largest size takes alone.

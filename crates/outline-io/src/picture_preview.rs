@@ -1,28 +1,27 @@
+//! A first look at pictures: how they are best traced, and how well their outlines are known.
 use std::io::Cursor;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use image::GrayImage;
 
-use crate::{
-    background::Background,
-    channel::Channel,
-    choice::{PictureSample, SamplePlan, TracingChoice, choose_tracing},
-    edges::{EdgeFit, median},
-    flat_bodies::level_of_missed,
-    ground_picture::ground_picture,
-    identity::Selection,
-    label_evidence::LabelEvidence,
-    label_pictures::LabelPicture,
-    picture::{read_picture_channel, read_picture_channels},
-    picture_error::PictureError,
-    picture_files::picture_files,
-    picture_outlines::{PictureOutlines, PictureSettings, TracedFrame},
-    picture_sequence::{PictureFrame, PictureSequence, SequenceSettings},
-    trace::is_two_valued,
-    trace_settings::TraceSettings,
-    whole_pixels,
-};
+use crate::choice::{PictureSample, SamplePlan, TracingChoice, choose_tracing};
+use crate::edges::{EdgeFit, median};
+use crate::ground::background::Background;
+use crate::ground::ground_picture::ground_picture;
+use crate::identity::identities::Selection;
+use crate::labels::evidence::LabelEvidence;
+use crate::labels::pictures::LabelPicture;
+use crate::picture_file::channel::Channel;
+use crate::picture_file::error::PictureError;
+use crate::picture_file::files::picture_files;
+use crate::picture_file::picture::{read_picture_channel, read_picture_channels};
+use crate::picture_file::sequence::{PictureFrame, PictureSequence, SequenceSettings};
+use crate::picture_outlines::{PictureOutlines, PictureSettings, TracedFrame};
+use crate::tracing::flat_bodies::level_of_missed;
+use crate::tracing::settings::TraceSettings;
+use crate::tracing::trace::is_two_valued;
+use crate::whole_pixels;
 
 /// Fewest pictures that tell how objects are best found.
 const FEWEST_PICTURES: usize = 3;

@@ -1,3 +1,4 @@
+//! Whether the pixels of a camera are square, told by bodies that turn.
 use freeform_curve_fit::Outline;
 use nalgebra::{Complex, Point2};
 

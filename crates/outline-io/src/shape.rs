@@ -1,3 +1,4 @@
+//! One closed outline from a file of any kind.
 use std::fs::File;
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
@@ -5,18 +6,18 @@ use std::path::Path;
 use freeform_curve_fit::Outline;
 use nalgebra::Point2;
 
-use crate::column::Column;
-use crate::csv_columns::{Columns, require};
-use crate::csv_field::number;
-use crate::csv_reader::OutlineReader;
-use crate::csv_rows::Rows;
+use crate::csv_file::columns::{Columns, require};
+use crate::csv_file::field::number;
+use crate::csv_file::reader::OutlineReader;
+use crate::csv_file::rows::Rows;
 use crate::error::{Place, ReadError, ReadErrorKind, ReadShapeError};
 use crate::frame::DEFAULT_OBJECT;
 use crate::outline_file::TableFormat;
-use crate::outline_rows::OutlineRows;
-use crate::picture::read_picture;
-use crate::trace::trace_mask;
-use crate::trace_settings::TraceSettings;
+use crate::picture_file::picture::read_picture;
+use crate::table::column::Column;
+use crate::table::outline_rows::OutlineRows;
+use crate::tracing::settings::TraceSettings;
+use crate::tracing::trace::trace_mask;
 
 /// Number of bytes at the beginning of a file that identify a picture format.
 const MAGIC_LENGTH: u64 = 16;
@@ -88,8 +89,8 @@ fn closed(outline: Option<Outline>, file: String) -> Result<Outline, ReadShapeEr
 /// The first outline of a Parquet file, which may lack frames.
 #[cfg(feature = "parquet")]
 fn first_of_parquet(path: &Path) -> Result<Option<Outline>, ReadError> {
-    use crate::parquet_columns::Needed;
-    use crate::parquet_reader::ParquetReader;
+    use crate::parquet_file::columns::Needed;
+    use crate::parquet_file::reader::ParquetReader;
     let first = ParquetReader::open_needing(path, Needed::Shape)?.next();
     Ok(first.transpose()?.map(|frame| frame.outline))
 }

@@ -1,12 +1,13 @@
-use crate::contacts::AfterContact;
+//! Outlines with their pictures, as a tracker takes them.
 use crate::frame::OutlineFrame;
-use crate::identity::AmongAlike;
-use crate::picture_error::{PictureError, TraceError};
+use crate::identity::contacts::AfterContact;
+use crate::identity::identities::AmongAlike;
+use crate::picture_file::error::{PictureError, TraceError};
+use crate::picture_file::sequence::PictureFrame;
+use crate::picture_file::source_picture::SourcePicture;
 use crate::picture_outlines::{PictureOutlines, PictureSettings, TracedFrame};
-use crate::picture_sequence::PictureFrame;
 use crate::pixel_aspect::PixelAspectCheck;
-use crate::source_picture::SourcePicture;
-use crate::trace_settings::TraceSettings;
+use crate::tracing::settings::TraceSettings;
 
 /// The outlines of a sequence of pictures as a tracker takes them, with the pictures, and what the settings that were left open came to.
 ///

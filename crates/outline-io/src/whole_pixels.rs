@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use nalgebra::{Point2, Vector2};
 
 use crate::picture_outlines::TracedFrame;
-use crate::trace::TracedOutline;
-use crate::trace_settings::TraceSettings;
+use crate::tracing::settings::TraceSettings;
+use crate::tracing::trace::TracedOutline;
 
 /// How far a step may be off a whole number of pixels to be one, in pixels.
 const WHOLE_STEP: f64 = 0.05;
@@ -65,9 +65,9 @@ mod tests {
     use image::GrayImage;
 
     use super::*;
-    use crate::identity::Selection;
+    use crate::identity::identities::Selection;
+    use crate::picture_file::sequence::PictureFrame;
     use crate::picture_outlines::{PictureOutlines, PictureSettings};
-    use crate::picture_sequence::PictureFrame;
 
     /// Grey value of an anti-aliased rectangle with a border, whose upper left corner is at a place.
     fn bordered(x: f64, y: f64, left: f64, top: f64) -> f64 {

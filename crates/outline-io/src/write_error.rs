@@ -1,3 +1,4 @@
+//! Why an outline could not be written.
 use std::io;
 
 use thiserror::Error;

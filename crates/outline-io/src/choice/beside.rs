@@ -5,8 +5,8 @@ use super::chains::Chain;
 use super::sight::Sight;
 use super::tuning::beside as tuning;
 use super::turning::Reach;
-use crate::affine_moment_invariants::is_within;
-use crate::known_object::LEFT;
+use crate::identity::affine_moment_invariants::is_within;
+use crate::identity::known_object::LEFT;
 
 /// What is seen to change besides what is traced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

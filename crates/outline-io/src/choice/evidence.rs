@@ -1,9 +1,11 @@
+//! What speaks for a way of tracing, and the score made of it.
 use super::rest::{movement, rests};
 use super::sight::{Inner, Sight};
 use super::trial::Trial;
+use super::tuning::score as tuning;
 use super::{LINE, Tracing};
 use crate::edges::median;
-use crate::identity::Selection;
+use crate::identity::identities::Selection;
 
 /// What speaks for a way of tracing, and against it. Shares are from 0 to 1, 1 the best.
 #[derive(Debug, Clone, PartialEq)]
@@ -83,12 +85,13 @@ pub(super) fn evidence_of(trial: &Trial, tracing: Tracing, sights: &[Sight]) -> 
     let movement = factor * movement(sights);
     let area_share = area / picture_area;
 
-    let moves = if pictures < 3 || movement > 1.5 { 1.0 } else { 0.35 };
-    let is_ground = if area_share > 0.55 { 0.05 } else { 1.0 };
+    let moves = if pictures < 3 || movement > tuning::MOVES { 1.0 } else { tuning::AT_REST };
+    let is_ground = if area_share > tuning::MOST_OF_PICTURE { tuning::GROUND } else { 1.0 };
     // Many small things do no harm where one is much larger than all.
-    let many = (1.0 + (all_objects - 12.0).max(0.0) / 12.0).powf(-(5.0 * second).min(1.0));
-    let size = area * factor * factor / (area * factor * factor + 120.0);
-    let share = (found as f64 / pictures as f64).powf(0.7);
+    let too_many = (all_objects - tuning::FEW_OBJECTS).max(0.0) / tuning::FEW_OBJECTS;
+    let many = (1.0 + too_many).powf(-(second / tuning::SECOND_COUNTS).min(1.0));
+    let size = area * factor * factor / (area * factor * factor + tuning::SMALL);
+    let share = (found as f64 / pictures as f64).powf(tuning::POWER_OF_SHARE);
     let score = share
         * steadiness
         * evenness
@@ -98,7 +101,7 @@ pub(super) fn evidence_of(trial: &Trial, tracing: Tracing, sights: &[Sight]) -> 
         * is_ground
         * many
         * size
-        * (1.0 - 0.7 * clipped * clipped);
+        * (1.0 - tuning::LOST_BY_CLIPPING * clipped * clipped);
     Some(TracingEvidence {
         tracing,
         pictures,
@@ -128,18 +131,23 @@ fn has_steady_contours(whole: &[&Sight]) -> bool {
     else {
         return false;
     };
-    let is_same = |sight: &&&Sight| sight.inner.count as f64 == count && (sight.inner.share / area).ln().abs() < 0.1;
-    whole.len() > 2 && count > 0.0 && largest < LINE && whole.iter().filter(is_same).count() * 10 >= whole.len() * 8
+    let is_same = |sight: &&&Sight| {
+        sight.inner.count as f64 == count && (sight.inner.share / area).ln().abs() < tuning::SAME_HOLES
+    };
+    whole.len() > 2
+        && count > 0.0
+        && largest < LINE
+        && whole.iter().filter(is_same).count() as f64 >= tuning::NEARLY_ALL * whole.len() as f64
 }
 
 /// How many of the sights are like the one that most are like.
 fn steadiness(whole: &[&Sight]) -> f64 {
     if whole.is_empty() {
-        return 0.3;
+        return tuning::NOT_TOLD;
     }
     let alike = |a: &Sight, b: &Sight| {
-        let growth = (a.area / b.area).ln() / 0.12;
-        let shape = a.invariants.zip(b.invariants).map_or(1.0, |(a, b)| a.distance(&b) / 0.2);
+        let growth = (a.area / b.area).ln() / tuning::GROWTH;
+        let shape = a.invariants.zip(b.invariants).map_or(1.0, |(a, b)| a.distance(&b) / tuning::SHAPE);
         (-0.5 * (growth * growth + shape * shape)).exp()
     };
     let mean = |a: &&Sight| whole.iter().map(|b| alike(a, b)).sum::<f64>() / whole.len() as f64;
@@ -149,15 +157,16 @@ fn steadiness(whole: &[&Sight]) -> f64 {
 /// How little area and shape change from one picture to the next.
 fn evenness(pairs: &[(&Sight, &Sight)], factor: f64) -> f64 {
     let whole = || pairs.iter().filter(|(a, b)| !a.is_clipped && !b.is_clipped);
-    // What the rounding of a small outline to pixels may do.
-    let growth = median(
-        whole().map(|(a, b)| (a.area / b.area).ln().abs() / (0.02 + 0.3 * factor.min(2.0) / a.area.max(1.0).sqrt())),
-    );
+    let [of_all, of_rounding] = tuning::GROWTH_OF_STEP;
+    let expected = |area: f64| of_all + of_rounding * factor.min(2.0) / area.max(1.0).sqrt();
+    let growth = median(whole().map(|(a, b)| (a.area / b.area).ln().abs() / expected(a.area)));
     let shape = median(whole().filter_map(|(a, b)| Some(a.invariants?.distance(&b.invariants?))));
     match (growth, shape) {
-        (Some(growth), Some(shape)) => 1.0 / (1.0 + (growth / 2.0).powi(2)) / (1.0 + (shape / 0.1).powi(2)),
-        _ if pairs.is_empty() => 0.3,
-        _ => 0.5,
+        (Some(growth), Some(shape)) => {
+            1.0 / (1.0 + (growth / tuning::MUCH_GROWTH).powi(2)) / (1.0 + (shape / tuning::SHAPE_OF_STEP).powi(2))
+        }
+        _ if pairs.is_empty() => tuning::NOT_TOLD,
+        _ => tuning::HALF_TOLD,
     }
 }
 
@@ -168,5 +177,5 @@ fn smoothness(sights: &[Sight]) -> f64 {
         let step = (w[1].centre - w[0].centre).norm();
         (w[0].centre.coords - 2.0 * w[1].centre.coords + w[2].centre.coords).norm() / (w[1].size() + 2.0 * step)
     }));
-    bend.map_or(0.5, |bend| 1.0 / (1.0 + (bend / 0.05).powi(2)))
+    bend.map_or(tuning::HALF_TOLD, |bend| 1.0 / (1.0 + (bend / tuning::BEND).powi(2)))
 }

@@ -5,13 +5,13 @@ use std::thread;
 use super::trial::{OBJECTS, Trial};
 use super::tuning::light as tuning;
 use super::{PictureSample, Tracing};
-use crate::affine_moment_invariants::SecondMoments;
-use crate::channel::Channel;
 use crate::edges::median;
+use crate::identity::affine_moment_invariants::SecondMoments;
+use crate::picture_file::channel::Channel;
 use crate::picture_outlines::PictureSettings;
-use crate::trace::TracedOutline;
-use crate::trace_settings::{Contours, Edges, TraceSettings};
-use crate::transfer::Transfer;
+use crate::tracing::settings::{Contours, Edges, TraceSettings};
+use crate::tracing::trace::TracedOutline;
+use crate::tracing::transfer::Transfer;
 
 /// Logarithms of lengths that stay the same however a body turns and travels: the root of its area, its longest and its shortest radius of gyration.
 type Sizes = [f64; 3];

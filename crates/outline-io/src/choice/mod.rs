@@ -19,15 +19,15 @@ use std::sync::Arc;
 
 use image::GrayImage;
 
-use crate::background::{Background, Difference};
-use crate::channel::Channel;
-use crate::contrast::Contrast;
-use crate::margins::Margins;
+use crate::ground::background::{Background, Difference};
+use crate::picture_file::channel::Channel;
 use crate::picture_outlines::PictureSettings;
-use crate::ring::Ring;
-use crate::threshold::Threshold;
-use crate::trace_settings::{Smoothing, TraceSettings};
-use crate::transfer::Transfer;
+use crate::tracing::contrast::Contrast;
+use crate::tracing::margins::Margins;
+use crate::tracing::ring::Ring;
+use crate::tracing::settings::{Smoothing, TraceSettings};
+use crate::tracing::threshold::Threshold;
+use crate::tracing::transfer::Transfer;
 pub use evidence::TracingEvidence;
 use evidence::judged;
 use light::transfer_of;
@@ -50,7 +50,7 @@ pub enum TracingWay {
     /// A light line is around them.
     LightRing,
     /// They differ from the ground of the whole sequence: the median of pictures of it, without what rests in most of these and leaves or comes
-    /// ([`ground_picture`](crate::ground_picture)).
+    /// ([`ground_picture`](crate::ground::ground_picture)).
     Median(Difference),
     /// They differ from a smooth surface through the ground of each picture.
     Surface(Difference),

@@ -9,12 +9,12 @@ use super::sight::Sight;
 use super::trial::Trial;
 use super::tuning::chains as tuning;
 use super::{AGAINST_NOISE, PictureSample, Tracing, TracingWay};
-use crate::background::Difference;
-use crate::channel::Channel;
-use crate::identity::Selection;
-use crate::known_object::LEFT;
+use crate::ground::background::Difference;
+use crate::identity::identities::Selection;
+use crate::identity::known_object::LEFT;
+use crate::picture_file::channel::Channel;
 use crate::picture_outlines::PictureSettings;
-use crate::trace_settings::Smoothing;
+use crate::tracing::settings::Smoothing;
 
 /// Objects of a picture that are looked at.
 pub(super) const OBJECTS: usize = 12;

@@ -6,8 +6,8 @@ use super::sight::Sight;
 use super::trial::Trial;
 use super::warning::TracingWarning;
 use super::{FEWEST_FOR_MEDIAN, GOOD, PictureSample, Tracing, TracingChoice};
-use crate::channel::Channel;
-use crate::identity::Selection;
+use crate::identity::identities::Selection;
+use crate::picture_file::channel::Channel;
 use crate::picture_outlines::PictureSettings;
 
 /// What moves by less than this share of its size in all may rest: its outline may change where something in front of it moves.
@@ -142,7 +142,7 @@ pub(super) fn motion_beside(
 mod tests {
     use super::*;
     use crate::choice::TracingWay;
-    use crate::trace_settings::Smoothing;
+    use crate::tracing::settings::Smoothing;
 
     /// What shows a thing of 20 by 20 pixels in pictures of 200 by 100.
     fn way(rests: bool, score: f64, movement: f64) -> TracingEvidence {

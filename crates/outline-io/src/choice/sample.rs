@@ -1,13 +1,14 @@
+//! Some pictures of a sequence, on which ways of tracing are tried.
 use std::sync::Arc;
 
 use image::GrayImage;
 
 use super::scaled::{factor_for, scaled};
-use crate::channel::Channel;
-use crate::margins::Margins;
-use crate::picture_error::PictureError;
-use crate::picture_sequence::PictureFrame;
-use crate::trace::is_two_valued;
+use crate::picture_file::channel::Channel;
+use crate::picture_file::error::PictureError;
+use crate::picture_file::sequence::PictureFrame;
+use crate::tracing::margins::Margins;
+use crate::tracing::trace::is_two_valued;
 
 /// Pictures that follow each other, so that they show how evenly something moves.
 pub(crate) const BURST: u64 = 3;

@@ -1,3 +1,4 @@
+//! Pictures scaled down by means of whole pixels.
 use image::GrayImage;
 
 /// A picture of means of `factor` x `factor` pixels; what is left over at the right and lower side is left out.

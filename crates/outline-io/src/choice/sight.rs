@@ -2,10 +2,10 @@
 use image::GrayImage;
 use nalgebra::{Point2, Vector2};
 
-use crate::affine_moment_invariants::AffineMomentInvariants;
-use crate::contrast::{Contrast, signal};
 use crate::edges::median;
-use crate::trace::TracedOutline;
+use crate::identity::affine_moment_invariants::AffineMomentInvariants;
+use crate::tracing::contrast::{Contrast, signal};
+use crate::tracing::trace::TracedOutline;
 
 /// Points of an outline where the contrast is looked at.
 const PLACES: usize = 64;

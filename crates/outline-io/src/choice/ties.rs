@@ -3,7 +3,7 @@ use super::evidence::TracingEvidence;
 use super::trial::Trial;
 use super::tuning::ties as tuning;
 use super::{PictureSample, worth};
-use crate::channel::Channel;
+use crate::picture_file::channel::Channel;
 use crate::picture_outlines::PictureSettings;
 
 /// Puts a way in front of the best where it does as well and its contours are known better: the score tells that both show one body, and not how well

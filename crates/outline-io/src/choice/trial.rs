@@ -7,18 +7,18 @@ use image::GrayImage;
 use super::scaled::{factor_for, scaled};
 use super::sight::Sight;
 use super::{BURST, PictureSample, Tracing, TracingWay};
-use crate::background::Background;
-use crate::channel::Channel;
-use crate::contrast::Contrast;
 use crate::edges::median;
-use crate::ground_picture::ground_picture;
-use crate::ground_surface::ground_surface;
+use crate::ground::background::Background;
+use crate::ground::ground_picture::ground_picture;
+use crate::ground::ground_surface::ground_surface;
+use crate::picture_file::channel::Channel;
 use crate::picture_outlines::{PictureSettings, View};
-use crate::ring::Ring;
-use crate::threshold::{beyond_noise, counted};
-use crate::trace::{TracedOutline, blurred, is_two_valued, trace_objects};
-use crate::trace_settings::{Clipping, Contours, Edges, Smoothing, TraceSettings};
-use crate::transfer::Transfer;
+use crate::tracing::contrast::Contrast;
+use crate::tracing::ring::Ring;
+use crate::tracing::settings::{Clipping, Contours, Edges, Smoothing, TraceSettings};
+use crate::tracing::threshold::{beyond_noise, counted};
+use crate::tracing::trace::{TracedOutline, blurred, is_two_valued, trace_objects};
+use crate::tracing::transfer::Transfer;
 
 /// Most pixels of a picture where ways are tried for the first time.
 const COARSE_PIXELS: u64 = 90_000;

@@ -34,6 +34,53 @@ pub(super) mod chains {
     pub(in crate::choice) const CLEAR: f64 = 0.75;
 }
 
+/// The score of a way of tracing: a product of shares. The values were set by hand so that what a person would choose comes first in simulated and real
+/// sequences.
+pub(super) mod score {
+    /// What moves by more than so many pixels in all moves beyond the rounding of its outline; the share of the score that what rests keeps.
+    pub(in crate::choice) const MOVES: f64 = 1.5;
+    pub(in crate::choice) const AT_REST: f64 = 0.35;
+
+    /// What covers more of the picture than this is the ground around an object; the share of the score that it keeps.
+    pub(in crate::choice) const MOST_OF_PICTURE: f64 = 0.55;
+    pub(in crate::choice) const GROUND: f64 = 0.05;
+
+    /// Objects in a picture that are no clutter; and the size of the second largest, as a share of the largest, from which on more count fully.
+    pub(in crate::choice) const FEW_OBJECTS: f64 = 12.0;
+    pub(in crate::choice) const SECOND_COUNTS: f64 = 0.2;
+
+    /// Area of which half of the score is left, in pixels: smaller things are mostly specks, and tell little of a motion.
+    pub(in crate::choice) const SMALL: f64 = 120.0;
+
+    /// Power of the share of pictures in which something is found: bodies come and go, so that half of the pictures keep more than half of the score.
+    pub(in crate::choice) const POWER_OF_SHARE: f64 = 0.7;
+
+    /// Share of the score lost where the border of the picture clips what is found in every picture.
+    pub(in crate::choice) const LOST_BY_CLIPPING: f64 = 0.7;
+
+    /// Holes are the same where the logarithm of the ratio of their areas is less than this, in nearly all pictures.
+    pub(in crate::choice) const SAME_HOLES: f64 = 0.1;
+    pub(in crate::choice) const NEARLY_ALL: f64 = 0.8;
+
+    /// Deviations of the logarithm of the area and of affine moment invariants, over a sequence, of one body: light and tracing change them.
+    pub(in crate::choice) const GROWTH: f64 = 0.12;
+    pub(in crate::choice) const SHAPE: f64 = 0.2;
+
+    /// What the area may grow by from one picture to the next: of all outlines, and by the rounding of small ones to pixels, over their size.
+    pub(in crate::choice) const GROWTH_OF_STEP: [f64; 2] = [0.02, 0.3];
+
+    /// So many times that growth, or such a change of the invariants, halves the score.
+    pub(in crate::choice) const MUCH_GROWTH: f64 = 2.0;
+    pub(in crate::choice) const SHAPE_OF_STEP: f64 = 0.1;
+
+    /// So large a bend of the path within three pictures halves it, in sizes.
+    pub(in crate::choice) const BEND: f64 = 0.05;
+
+    /// Share of the score where nothing tells it, and where a part of what would is missing.
+    pub(in crate::choice) const NOT_TOLD: f64 = 0.3;
+    pub(in crate::choice) const HALF_TOLD: f64 = 0.5;
+}
+
 /// What there is beside a thing that may move.
 pub(super) mod beside {
     /// A change is no larger than this share of the picture: light changes more of it at once.

@@ -1,3 +1,4 @@
+//! What a user should know of a way of tracing that was chosen.
 use std::fmt;
 
 /// What a user should know of a way of tracing that was chosen: a [`code`](Self::code) for programs, a message for people.

@@ -3,10 +3,17 @@ use nalgebra::{Point2, Vector2};
 
 use super::blur_width::EdgeBlur;
 use super::{EdgeFit, smoothed};
-use crate::affine_moment_invariants::AreaAndCentre;
+use crate::identity::affine_moment_invariants::AreaAndCentre;
 
 /// Bends of more than this over the width of the edge move it by less than the first order says.
 const MOST_BENT: f64 = 0.3;
+
+/// Distance between two neighbouring crossings of a line with the grid, in the mean, in pixels.
+const BETWEEN_CROSSINGS: f64 = 0.77;
+
+/// Crossings to either side that a curvature is taken from: as many as lie within four widths of the edge, at least and at most so many.
+const WIDTHS_OF_ARC: f64 = 4.0;
+const CROSSINGS_OF_ARC: [usize; 2] = [5, 16];
 
 /// Where an edge is seen among what the motion spreads, as a share of the mean, and how far that may be off: most of it is near one end. Measured on
 /// discs that move by 0.3 to 0.9 of their radius.
@@ -56,8 +63,9 @@ pub(super) fn bends(
         let normal = normals[i]?;
         let [variance, of_motion] = blur.along(&normal);
         let width = variance.sqrt();
-        // About 0.77 pixels lie between two crossings.
-        let reach = ((4.0 * width / 0.77).ceil() as usize).clamp(5, 16).min(count / 6).max(1);
+        let [fewest, most] = CROSSINGS_OF_ARC;
+        let reach =
+            ((WIDTHS_OF_ARC * width / BETWEEN_CROSSINGS).ceil() as usize).clamp(fewest, most).min(count / 6).max(1);
         let (before, after) = ((i + count - reach) % count, (i + reach) % count);
         if normals[before].is_none() || normals[after].is_none() {
             return None;

@@ -5,8 +5,8 @@ use std::sync::LazyLock;
 use nalgebra::{Matrix3, Point2, Vector2, Vector3};
 
 use super::sampler::Sampler;
-use super::step_fit::{Offsets, SPACING, normal_distribution};
-use super::{Edge, median};
+use super::step_fit::{Offsets, SPACING, normal_cdf};
+use super::{Edge, SMALLEST_STEP, median};
 
 /// Points whose profiles tell the width.
 const PROFILES: usize = 96;
@@ -65,9 +65,10 @@ impl EdgeBlur {
         normals: &[Option<Vector2<f64>>],
         edges: &[Edge],
     ) -> Option<Self> {
-        let typical = median(edges.iter().map(|edge| edge.step))?;
-        let rises: Vec<usize> =
-            (0..points.len()).filter(|&i| normals[i].is_some() && edges[i].step > 0.3 * typical.max(1e-9)).collect();
+        let typical = median(edges.iter().map(|edge| edge.height))?;
+        let rises: Vec<usize> = (0..points.len())
+            .filter(|&i| normals[i].is_some() && edges[i].height > SMALLEST_STEP * typical.max(1e-9))
+            .collect();
         let step = rises.len().div_ceil(PROFILES).max(1);
         let places: Vec<(Point2<f64>, Vector2<f64>)> = rises
             .iter()
@@ -170,7 +171,7 @@ impl EdgeBlur {
     }
 
     /// How far the body moves while the shutter is open, in pixels: 0 where edges are alike in all directions.
-    pub(super) fn way(&self) -> f64 {
+    pub(super) fn motion_blur(&self) -> f64 {
         // The variance of what lies evenly along a way is a twelfth of its square.
         12.0_f64.sqrt() * self.by_motion.norm()
     }
@@ -225,7 +226,7 @@ impl Profiles {
             let is_near = |s: f64| s.abs() <= (2.0 * width + 1.0).min(reach);
             let first = offsets.iter().take_while(|s| !is_near(*s)).count();
             let near = offsets.iter().filter(|s| is_near(*s));
-            let samples: Vec<f64> = near.map(|s| 0.5 - normal_distribution(s / width)).collect();
+            let samples: Vec<f64> = near.map(|s| 0.5 - normal_cdf(s / width)).collect();
             StepOfWidth { width, first, square: samples.iter().map(|shape| shape.powi(2)).sum(), samples }
         };
         let steps = widths.map(step).collect();
@@ -294,7 +295,7 @@ mod tests {
     fn a_blur_along_a_path_is_told_with_its_way() {
         let path = Vector2::new(0.6, -0.8);
         let blur = EdgeBlur::fitted(&widths(12, |n| (0.64 + 4.0 * n.dot(&path).powi(2)).sqrt())).expect("a blur");
-        assert!((blur.way() - 48_f64.sqrt()).abs() < 0.02, "{blur:?}");
+        assert!((blur.motion_blur() - 48_f64.sqrt()).abs() < 0.02, "{blur:?}");
         assert!((blur.across(&path) - 4.64_f64.sqrt()).abs() < 0.01, "{blur:?}");
         let [all, of_motion] = blur.along(&path);
         assert!((all - 0.64).abs() < 0.01 && of_motion < 1e-6, "{blur:?}");

@@ -1,3 +1,4 @@
+//! Places where points that moved onto their edges have changed their order.
 use nalgebra::Point2;
 
 /// Segments of a small loop, whose points are put in a row again; wider ones are two parts of the line that cross.

@@ -4,7 +4,7 @@ use nalgebra::{Point2, Vector2};
 use super::blur_width::EdgeBlur;
 use super::sampler::Sampler;
 use super::step_fit::{SPACING, StepFit};
-use super::{Edge, FIRST_WIDTH, median};
+use super::{Edge, FIRST_WIDTH, LEAST_RESIDUAL, median};
 
 /// How far narrow profiles reach, in widths of the edge and pixels: near enough for thin parts.
 const NARROW: [f64; 2] = [2.2, 1.2];
@@ -15,6 +15,13 @@ const NARROW: [f64; 2] = [2.2, 1.2];
 /// the light of one side changes.
 const WIDE: [[f64; 2]; 2] = [[4.0, 1.5], [6.0, -1.5]];
 
+/// Least and greatest reach of both, in pixels.
+const REACH_OF_NARROW: [f64; 2] = [2.5, 12.0];
+const REACH_OF_WIDE: [f64; 2] = [3.0, 18.0];
+
+/// Reach of the first profiles, before the width is known, in pixels.
+const FIRST_REACH: f64 = 4.0;
+
 /// A wide fit that leaves so many times what narrow ones leave is of more than one edge.
 const NOT_ALONE: f64 = 1.3;
 
@@ -22,8 +29,14 @@ const NOT_ALONE: f64 = 1.3;
 const MOST_MOVED: [f64; 2] = [1.0, 0.5];
 const FARTHEST_FOUND: [f64; 2] = [8.0, 2.0];
 
-/// Farthest that the wide profile may move an edge, in widths of it.
+/// Farthest that the wide profile may move an edge, in widths of it, the least share of its height that it must leave, and the most times the typical
+/// residual that the fit may leave.
 const SAME_EDGE: f64 = 0.4;
+const SAME_HEIGHT: f64 = 0.7;
+const GOOD_FIT: f64 = 1.5;
+
+/// An edge that a round moves by less has settled, in pixels: well below what the fit is good for.
+const SETTLED: f64 = 0.004;
 
 /// Light that differs from that of its side of the step by more than so large a share of the step, and so many times what the fits leave, is another
 /// edge. A fifth of a step is reached 0.85 widths before its middle, so that this many widths nearer a hundredth of it is left.
@@ -72,15 +85,15 @@ impl Sampler<'_> {
     /// The edges on the normals of points. `None` where there are none.
     pub(super) fn fitted(&self, points: &[Point2<f64>], normals: &[Option<Vector2<f64>>]) -> Option<Fitted> {
         let mut edges = vec![Edge::default(); points.len()];
-        self.fit_all(points, normals, &mut edges, &StepFit::new(FIRST_WIDTH, 4.0), 2);
+        self.fit_all(points, normals, &mut edges, &StepFit::new(FIRST_WIDTH, FIRST_REACH), 2);
         let mut blur = EdgeBlur::of(self, points, normals, &edges)?;
         let mut fits = self.fit_blurred(points, normals, &mut edges, &blur)?;
-        if blur.way() > 0.0 {
+        if blur.motion_blur() > 0.0 {
             // Profiles that are not about wide edges yet seem narrower.
             for _ in 0..MOST_ROUNDS {
                 let before = std::mem::replace(&mut blur, EdgeBlur::of(self, points, normals, &edges)?);
                 fits = self.fit_blurred(points, normals, &mut edges, &blur)?;
-                if blur.way() < WIDER_AGAIN * before.way() {
+                if blur.motion_blur() < WIDER_AGAIN * before.motion_blur() {
                     break;
                 }
             }
@@ -98,7 +111,7 @@ impl Sampler<'_> {
         edges: &mut [Edge],
         blur: &EdgeBlur,
     ) -> Option<(Vec<StepFit>, Vec<usize>)> {
-        if blur.way() == 0.0 {
+        if blur.motion_blur() == 0.0 {
             let fit = self.fit_width(points, normals, edges, blur.mean_width())?;
             return Some((vec![fit], vec![0; points.len()]));
         }
@@ -123,10 +136,10 @@ impl Sampler<'_> {
         edges: &mut [Edge],
         width: f64,
     ) -> Option<StepFit> {
-        let narrow = StepFit::new(width, reach(NARROW, width).clamp(2.5, 12.0));
+        let narrow = StepFit::new(width, reach(NARROW, width).clamp(REACH_OF_NARROW[0], REACH_OF_NARROW[1]));
         self.fit_all(points, normals, edges, &narrow, 3);
-        let far = WIDE.map(|of| reach(of, width)).into_iter().fold(3.0, f64::max);
-        let fit = StepFit::new(width, far.min(18.0));
+        let far = WIDE.map(|of| reach(of, width)).into_iter().fold(REACH_OF_WIDE[0], f64::max);
+        let fit = StepFit::new(width, far.min(REACH_OF_WIDE[1]));
         let mut wide = edges.to_vec();
         self.fit_all(points, normals, &mut wide, &fit, 2);
         let typical_of = |edges: &[Edge]| {
@@ -139,8 +152,9 @@ impl Sampler<'_> {
         let typical = of_wide.min(of_narrow);
         let mut shorter = Shorter { fit: &fit, typical, fits: Vec::new(), values: Vec::new() };
         for (index, (edge, wide)) in edges.iter_mut().zip(wide).enumerate() {
-            let is_same_edge = (wide.place - edge.place).abs() <= SAME_EDGE * width && wide.step >= 0.7 * edge.step;
-            let is_wide = is_same_edge && wide.residual <= 1.5 * typical.max(0.5);
+            let is_same_edge =
+                (wide.place - edge.place).abs() <= SAME_EDGE * width && wide.height >= SAME_HEIGHT * edge.height;
+            let is_wide = is_same_edge && wide.residual <= GOOD_FIT * typical.max(LEAST_RESIDUAL);
             let found = match normals[index] {
                 Some(normal) if is_thin || !is_wide => shorter.refitted(self, (points[index], normal), edge),
                 _ => None,
@@ -185,13 +199,13 @@ impl Sampler<'_> {
             self.profile(point + edge.place * normal, normal, fit.offsets(), values);
             let found = last.insert(fit.of(values));
             // Outwards the signal falls.
-            edge.step = -found.step;
+            edge.height = -found.height;
             edge.one_sided = Some(found.one_sided);
             let most = MOST_MOVED[0].max(MOST_MOVED[1] * fit.width());
-            let moved = if edge.step > 0.0 { found.place.clamp(-most, most) } else { 0.0 };
+            let moved = if edge.height > 0.0 { found.place.clamp(-most, most) } else { 0.0 };
             let farthest = FARTHEST_FOUND[0].max(FARTHEST_FOUND[1] * fit.width());
             edge.place = (edge.place + moved).clamp(-farthest, farthest);
-            if moved.abs() < 0.004 {
+            if moved.abs() < SETTLED {
                 break;
             }
         }
@@ -231,7 +245,7 @@ impl Shorter<'_> {
         let fit = self.fits.get(index)?;
         let mut shorter = *edge;
         source.fit_one(point, normal, &mut shorter, fit, (2, &mut self.values));
-        let is_same_edge = (shorter.place - edge.place).abs() <= SAME_EDGE * width && shorter.step > 0.0;
+        let is_same_edge = (shorter.place - edge.place).abs() <= SAME_EDGE * width && shorter.height > 0.0;
         Some(match is_same_edge {
             true => Edge { one_sided: None, deviation: fit.deviation_of_place(), ..shorter },
             false => Edge { one_sided: None, ..*edge },
@@ -244,10 +258,10 @@ impl Shorter<'_> {
         let middle = values.len() / 2;
         let near = ((2.0 * width / SPACING) as usize).min(middle);
         let level = values[middle - near..=middle + near].iter().sum::<f64>() / (2 * near + 1) as f64;
-        let most = (ANOTHER_EDGE[0] * edge.step).max(ANOTHER_EDGE[1] * self.typical);
+        let most = (ANOTHER_EDGE[0] * edge.height).max(ANOTHER_EDGE[1] * self.typical);
         let differs = |k: usize| {
             let [inner, outer] = [values[middle - k], values[middle + k]];
-            inner < level + 0.5 * edge.step - most || outer > level - 0.5 * edge.step + most
+            inner < level + 0.5 * edge.height - most || outer > level - 0.5 * edge.height + most
         };
         (near..=middle).find(|k| differs(*k)).map(|k| SPACING * k as f64)
     }

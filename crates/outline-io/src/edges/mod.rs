@@ -4,11 +4,23 @@
 //! sides, blurred by a Gaussian. With the place `e` of the step come its own height `c` and middle `m`, so that neither a threshold
 //! nor a shading moves it. The width `w` is one for a contour, or goes with the direction of the edge where the body
 //! moves while the shutter is open.
+//!
+//! | module | question |
+//! |---|---|
+//! | `sampler` | which grey values lie along a normal? |
+//! | `step_fit` | which step does one profile show, to first order? |
+//! | `fitting` | where is the edge on every normal, by the widest profile that shows it alone? |
+//! | `blur_width` | how wide are the edges, by their direction? |
+//! | `bends` | by how much does blur move the edges of bent outlines? |
+//! | `systematic` | by how much may the edges of a side lie off together? |
+//! | `on_pixels` | are the edges those of pixels? |
+//! | `crossings` | which points have moved past each other? |
+//! | `learnt_profile` | where is the edge of a known object, by what its edges looked like before? |
 mod bends;
 mod blur_width;
 mod crossings;
-mod edge_profile;
 mod fitting;
+mod learnt_profile;
 mod on_pixels;
 mod sampler;
 mod step_fit;
@@ -18,15 +30,16 @@ use freeform_curve_fit::isoline::Crossing;
 use image::GrayImage;
 use nalgebra::{Point2, Vector2};
 
-use crate::contrast::Contrast;
-use crate::tracing_input::GroundComparison;
-use crate::transfer::Transfer;
-pub use edge_profile::{EdgeProfile, SoughtEdges};
+use crate::tracing::contrast::Contrast;
+use crate::tracing::input::GroundComparison;
+use crate::tracing::transfer::Transfer;
+pub use learnt_profile::{EdgeProfile, SoughtEdges};
 
 use bends::{bends, of_long_way};
 use crossings::{Moved, undo_crossings};
 use fitting::Fitted;
 use sampler::Sampler;
+use step_fit::StepFit;
 
 /// Width of the edges before it is known, in pixels.
 const FIRST_WIDTH: f64 = 1.2;
@@ -48,6 +61,10 @@ const CLEAR_STEP: f64 = 3.0;
 
 /// A fit that leaves so many times the median of the contour is that of something else.
 const WORST_FIT: f64 = 3.5;
+
+/// Least that fits leave, and least noise, in grey values, whatever is found: about what rounding to whole ones leaves.
+const LEAST_RESIDUAL: f64 = 0.5;
+const LEAST_NOISE: f64 = 0.3;
 
 /// Farthest that an edge may lie from those of its neighbours, in pixels and in widths of the edge.
 const FARTHEST_FROM_NEIGHBOURS: [f64; 2] = [0.7, 0.5];
@@ -87,8 +104,9 @@ pub struct EdgeFit {
     pub contrast: f64,
     /// Width of the edges: the standard deviation of their Gaussian blur in the mean over all directions, in pixels.
     pub blur: f64,
-    /// How far the object moves while the shutter is open, in pixels, to a third or so: as edges across its path are wider than those along it. From
-    /// about 1.5 pixels on, up to 30; 0 where all are alike. Pictures that were filtered along their rows alone have such edges too.
+    /// How far the object moves while the shutter is open, in pixels, up to a quarter too long: told by edges across its path, which are wider than
+    /// those along it. From about 1.5 pixels on, up to 30; 0 where all are alike. Pictures that were filtered along their rows alone have such edges
+    /// too.
     pub motion_blur: f64,
     /// How far edges may lie off together for that, in the unit of the outline. Not part of [`systematic`](Self::systematic).
     pub systematic_by_motion: f64,
@@ -135,7 +153,7 @@ struct Edge {
     /// From the point outwards, in pixels.
     place: f64,
     /// Height of the step, positive where the object is on its side of the contrast.
-    step: f64,
+    height: f64,
     /// Root mean square of what the fit leaves.
     residual: f64,
     /// How much farther out the edge is seen as the light changes on one side of it more than on the other; `None` where its profile is too
@@ -162,44 +180,31 @@ impl EdgeSource<'_> {
         let points: Vec<Point2<f64>> = line.iter().map(at).collect();
         let normals: Vec<Option<Vector2<f64>>> = (0..line.len()).map(|i| outward(line, i)).collect();
         let Fitted { edges, blur, fits, fit_of } = Sampler::new(self, &points).fitted(&points, &normals)?;
-        let own = |i: &usize| normals[*i].is_some();
-        let all: Vec<usize> = (0..line.len()).filter(own).collect();
-        let contrast = median(all.iter().map(|&i| edges[i].step))?;
+        let all: Vec<usize> = (0..line.len()).filter(|&i| normals[i].is_some()).collect();
+        let contrast = median(all.iter().map(|&i| edges[i].height))?;
         let residuals = residuals_of(&edges, &fit_of, fits.len(), &all)?;
-        let residual = residuals.iter().copied().fold(f64::INFINITY, f64::min);
         if contrast <= 0.0 {
             return None;
         }
-        let noise = residual / INTERPOLATED_NOISE;
-        let within = |[pixels, widths]: [f64; 2], i: usize| pixels + widths * fits[fit_of[i]].width();
-        let farthest = |i: usize| within(FARTHEST, i);
-        let smallest: Vec<f64> = fits
-            .iter()
-            .zip(&residuals)
-            .map(|(fit, left)| (SMALLEST_STEP * contrast).max(CLEAR_STEP * fit.deviation_of_step(*left)))
-            .collect();
-        let mut is_clear: Vec<bool> = (0..line.len())
-            .map(|i| {
-                let Edge { place, step, residual: left, .. } = edges[i];
-                let is_step = step >= smallest[fit_of[i]] && left <= WORST_FIT * residuals[fit_of[i]].max(0.5);
-                own(&i) && place.abs() <= farthest(i) && is_step
-            })
-            .collect();
-        leave_out_strays(&edges, &mut is_clear, |i| within(FARTHEST_FROM_NEIGHBOURS, i));
+        let noise = residuals.iter().copied().fold(f64::INFINITY, f64::min) / INTERPOLATED_NOISE;
+        let limits: Vec<Limits> =
+            fits.iter().zip(&residuals).map(|(fit, left)| Limits::of(fit, *left, contrast)).collect();
+        let of_edge = |i: usize| &limits[fit_of[i]];
+        let mut is_clear: Vec<bool> =
+            (0..line.len()).map(|i| normals[i].is_some() && of_edge(i).are_kept_by(&edges[i])).collect();
+        leave_out_strays(&edges, &mut is_clear, |i| of_edge(i).from_neighbours);
         let clear_share = is_clear.iter().filter(|clear| **clear).count() as f64 / all.len().max(1) as f64;
-        let places = bridged(&edges, &is_clear)?;
-        let places = smoothed(&places, self.along);
+        let places = smoothed(&bridged(&edges, &is_clear)?, self.along);
         let (bends, of_motion) = bends(&points, &normals, &places, &blur);
-        let of_motion = of_motion.hypot(of_long_way(blur.way(), blur.extent_along(&points)));
-        let steps = steps_around(&edges, &is_clear);
-        let deviation = |i: usize| {
-            let step = if is_clear[i] { steps[i] } else { contrast };
-            let random = noise.max(0.3) * edges[i].deviation / step;
-            if is_clear[i] { random } else { random.max(0.5 * farthest(i)) }
-        };
-        let mut deviations: Vec<f64> = (0..line.len()).map(deviation).collect();
         let shifts = edges.iter().zip(&is_clear).filter(|(_, clear)| **clear).filter_map(|(edge, _)| edge.one_sided);
         let systematic = systematic::of(&fits, noise, contrast, shifts);
+        let steps = steps_around(&edges, &is_clear);
+        let deviation = |i: usize| {
+            let height = if is_clear[i] { steps[i] } else { contrast };
+            let random = noise.max(LEAST_NOISE) * edges[i].deviation / height;
+            if is_clear[i] { random } else { random.max(0.5 * of_edge(i).farthest) }
+        };
+        let mut deviations: Vec<f64> = (0..line.len()).map(deviation).collect();
         let shift = |i: usize| (places[i] + bends[i]) * normals[i].unwrap_or_default();
         // Nothing is seen beyond the picture.
         let [right, lower] = [self.picture.width(), self.picture.height()].map(|size| f64::from(size) - 0.5);
@@ -216,18 +221,47 @@ impl EdgeSource<'_> {
             crossing.x = (crossing.x + (moved.x - before.x)).clamp(-0.5 - left as f64, right - left as f64);
             crossing.y = (crossing.y + (moved.y - before.y)).clamp(-0.5 - top as f64, lower - top as f64);
         }
+        let motion_blur = blur.motion_blur();
         let fit = EdgeFit {
             deviations,
             systematic,
             contrast,
             blur: blur.mean_width(),
-            motion_blur: blur.way(),
-            systematic_by_motion: of_motion,
+            motion_blur,
+            systematic_by_motion: of_motion.hypot(of_long_way(motion_blur, blur.extent_along(&points))),
             noise,
             clear_share,
             on_pixels: 0.0,
         };
         Some((fit, result))
+    }
+}
+
+/// What edges of one width have to keep to be edges of the object.
+struct Limits {
+    /// Least height of the step, in grey values.
+    height: f64,
+    /// Most that the fit may leave, in grey values.
+    residual: f64,
+    /// Farthest from the outline, and from the edges around, in pixels.
+    farthest: f64,
+    from_neighbours: f64,
+}
+
+impl Limits {
+    /// Of edges that were fitted so, of which fits leave this in the median, on a contour of this contrast.
+    fn of(fit: &StepFit, residual: f64, contrast: f64) -> Self {
+        let within = |[pixels, widths]: [f64; 2]| pixels + widths * fit.width();
+        Self {
+            height: (SMALLEST_STEP * contrast).max(CLEAR_STEP * fit.deviation_of_height(residual)),
+            residual: WORST_FIT * residual.max(LEAST_RESIDUAL),
+            farthest: within(FARTHEST),
+            from_neighbours: within(FARTHEST_FROM_NEIGHBOURS),
+        }
+    }
+
+    fn are_kept_by(&self, edge: &Edge) -> bool {
+        edge.place.abs() <= self.farthest && edge.height >= self.height && edge.residual <= self.residual
     }
 }
 
@@ -317,9 +351,9 @@ fn steps_around(edges: &[Edge], is_clear: &[bool]) -> Vec<f64> {
         let values = edges.iter().zip(is_clear).map(|(edge, clear)| if *clear { value(edge) } else { 0.0 });
         smoothed(&values.collect::<Vec<_>>(), STEPS_TOGETHER)
     };
-    let (sums, weights) = (of_clear(&|edge| edge.step), of_clear(&|_| 1.0));
+    let (sums, weights) = (of_clear(&|edge| edge.height), of_clear(&|_| 1.0));
     let means = sums.into_iter().zip(weights).zip(edges.iter().zip(is_clear));
-    means.map(|((sum, weight), (edge, clear))| if *clear { sum / weight } else { edge.step }).collect()
+    means.map(|((sum, weight), (edge, clear))| if *clear { sum / weight } else { edge.height }).collect()
 }
 
 /// Smoothed along the contour by a Gaussian.

@@ -2,6 +2,8 @@
 use freeform_curve_fit::isoline::Crossing;
 use image::GrayImage;
 
+use super::SMALLEST_STEP;
+
 /// Pixels that are looked at across an edge: the two that it lies between by the line, and one more to either side, as a smoothed line may lie
 /// beside it.
 const ACROSS: usize = 4;
@@ -9,9 +11,6 @@ const ACROSS: usize = 4;
 /// Share of what the grey values across an edge differ by that two pixels beside each other differ by where the edge lies between them: a sharp edge
 /// that covers pixels in part has this with one in five at random places, and blurred by 0.3 pixels 0.8 of it at most.
 const BETWEEN_PIXELS: f64 = 0.9;
-
-/// Steps of less than this share of the median step tell nothing.
-const SMALLEST_STEP: f64 = 0.3;
 
 /// Share of the points of a closed line of crossings, given from the left upper pixel of a window, whose edge lies between two pixels.
 pub(super) fn share(picture: &GrayImage, line: &[Crossing], place: [usize; 2]) -> f64 {

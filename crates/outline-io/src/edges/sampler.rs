@@ -1,11 +1,12 @@
+//! Grey values of pictures along the normals of an outline.
 use image::GrayImage;
 use nalgebra::{Point2, Vector2};
 
 use super::step_fit::{Offsets, SIDE_BY_SIDE};
 use super::{EdgeSource, interpolated, median};
-use crate::background::Difference;
-use crate::contrast::Contrast;
-use crate::transfer::Transfer;
+use crate::ground::background::Difference;
+use crate::tracing::contrast::Contrast;
+use crate::tracing::transfer::Transfer;
 
 /// A number from 0 on that is less than it by far is rounded to a whole one where both are added, which is then in the last bits of the sum.
 const ROUNDS: f64 = (1_u64 << (f64::MANTISSA_DIGITS - 1)) as f64;
@@ -132,7 +133,7 @@ fn whole_part(number: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tracing_input::GroundComparison;
+    use crate::tracing::input::GroundComparison;
 
     #[test]
     fn whole_parts_are_those_of_the_library() {

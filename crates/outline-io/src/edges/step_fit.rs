@@ -1,8 +1,13 @@
+//! One Gauss-Newton step of the fit of a blurred step to a profile; [`fitting`](super::fitting) iterates it.
+
 /// Distance of the samples of a profile, in pixels.
 pub(super) const SPACING: f64 = 0.5;
 
 /// Samples of a profile that are worked out side by side: some registers full.
 pub(super) const SIDE_BY_SIDE: usize = 4;
+
+/// Farthest from the middle that one fit puts a step, in pixels: what is farther off is not seen well.
+const FARTHEST_AT_ONCE: f64 = 2.0;
 
 /// A least-squares fit of a step of known width to a profile about it. The even part of the profile tells the place, the odd part the
 /// height: on a window that is symmetric about the edge the two do not disturb each other, nor does an even slope the place.
@@ -64,7 +69,7 @@ pub(super) struct Step {
     /// From the middle of the profile, in pixels, to first order.
     pub(super) place: f64,
     /// Grey values that the profile rises by.
-    pub(super) step: f64,
+    pub(super) height: f64,
     /// Mean of the grey values.
     middle: f64,
     /// How much farther along the edge is seen to lie as the light changes on one side of it more than on the other.
@@ -76,7 +81,7 @@ impl StepFit {
     pub(super) fn new(width: f64, reach: f64) -> Self {
         let offsets = Offsets::within(((reach / SPACING).round() as usize).max(3));
         let (shape, slope): (Vec<f64>, Vec<f64>) =
-            offsets.iter().map(|s| (normal_distribution(s / width) - 0.5, density(s / width) / width)).unzip();
+            offsets.iter().map(|s| (normal_cdf(s / width) - 0.5, normal_pdf(s / width) / width)).unzip();
         let bend: Vec<f64> = offsets.iter().map(f64::abs).collect();
         let about_mean = |values: &[f64]| -> Vec<f64> {
             let mean = values.iter().sum::<f64>() / values.len() as f64;
@@ -103,7 +108,7 @@ impl StepFit {
     }
 
     /// Standard deviation of a height, for samples with this residual.
-    pub(super) fn deviation_of_step(&self, residual: f64) -> f64 {
+    pub(super) fn deviation_of_height(&self, residual: f64) -> f64 {
         // Samples of neighbouring places share pixels: half of them are independent.
         residual * (2.0 * self.weights.iter().map(|[step, ..]| step * step).sum::<f64>()).sqrt()
     }
@@ -115,22 +120,26 @@ impl StepFit {
         information.max(1e-3).powf(-0.5)
     }
 
+    /// The step that a profile shows, its place to first order: one off the middle is found by taking the profile about that place and fitting again.
     pub(super) fn of(&self, values: &[f64]) -> Step {
-        let place_of = |step: f64, shift: f64| if step == 0.0 { 0.0 } else { (-shift / step).clamp(-2.0, 2.0) };
+        let place_of = |height: f64, shift: f64| match height {
+            0.0 => 0.0,
+            _ => (-shift / height).clamp(-FARTHEST_AT_ONCE, FARTHEST_AT_ONCE),
+        };
         // All sums side by side: one alone waits for its own last addition.
         let mut sums = [0.0; 4];
         for (of, value) in self.weights.iter().zip(values) {
             sums.iter_mut().zip(of).for_each(|(sum, of)| *sum += of * value);
         }
-        let [step, shift, bend, sum] = sums;
-        let place = place_of(step, shift);
-        let one_sided = place_of(step, bend * self.place_of_bend);
-        Step { place, step, middle: sum / values.len().max(1) as f64, one_sided }
+        let [height, shift, bend, sum] = sums;
+        let place = place_of(height, shift);
+        let one_sided = place_of(height, bend * self.place_of_bend);
+        Step { place, height, middle: sum / values.len().max(1) as f64, one_sided }
     }
 
     /// Root mean square of what a step leaves of the profile that shows it.
-    pub(super) fn residual(&self, values: &[f64], Step { step, middle, .. }: &Step) -> f64 {
-        let squares = values.iter().zip(&self.shape).map(|(value, shape)| (value - middle - step * shape).powi(2));
+    pub(super) fn residual(&self, values: &[f64], Step { height, middle, .. }: &Step) -> f64 {
+        let squares = values.iter().zip(&self.shape).map(|(value, shape)| (value - middle - height * shape).powi(2));
         (squares.sum::<f64>() / (values.len().max(4) - 3) as f64).sqrt()
     }
 }
@@ -145,12 +154,12 @@ fn dot(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).map(|(a, b)| a * b).sum()
 }
 
-fn density(z: f64) -> f64 {
+fn normal_pdf(z: f64) -> f64 {
     (-0.5 * z * z).exp() / (2.0 * std::f64::consts::PI).sqrt()
 }
 
 /// The normal distribution function, to 2e-7 (M. Abramowitz and I. Stegun, Handbook of Mathematical Functions, 7.1.26).
-pub(super) fn normal_distribution(z: f64) -> f64 {
+pub(super) fn normal_cdf(z: f64) -> f64 {
     let x = z.abs() / std::f64::consts::SQRT_2;
     let t = 1.0 / (1.0 + 0.327_591_1 * x);
     let series = [0.254_829_592, -0.284_496_736, 1.421_413_741, -1.453_152_027, 1.061_405_429];
@@ -170,17 +179,14 @@ mod tests {
             let fit = StepFit::new(width, 2.2 * width + 1.2);
             let mut found = 0.0;
             for _ in 0..5 {
-                let value = |s: f64| ground + height * normal_distribution((s + found - place) / width);
+                let value = |s: f64| ground + height * normal_cdf((s + found - place) / width);
                 let values: Vec<f64> = fit.offsets().iter().map(value).collect();
                 found += fit.of(&values).place;
             }
-            let values: Vec<f64> = fit
-                .offsets()
-                .iter()
-                .map(|s| ground + height * normal_distribution((s + found - place) / width))
-                .collect();
+            let values: Vec<f64> =
+                fit.offsets().iter().map(|s| ground + height * normal_cdf((s + found - place) / width)).collect();
             let found_again = fit.of(&values);
-            let (step, residual) = (found_again.step, fit.residual(&values, &found_again));
+            let (step, residual) = (found_again.height, fit.residual(&values, &found_again));
             assert!((found - place).abs() < 1e-4, "{found} {place}");
             assert!((step / height - 1.0).abs() < 1e-3 && residual < 1e-2 * height.abs(), "{step} {residual}");
         }
@@ -189,7 +195,7 @@ mod tests {
     #[test]
     fn a_slope_of_the_ground_does_not_move_the_step() {
         let fit = StepFit::new(1.5, 4.5);
-        let values: Vec<f64> = fit.offsets().iter().map(|s| 100.0 * normal_distribution(s / 1.5) + 2.0 * s).collect();
+        let values: Vec<f64> = fit.offsets().iter().map(|s| 100.0 * normal_cdf(s / 1.5) + 2.0 * s).collect();
         assert!(fit.of(&values).place.abs() < 1e-6);
     }
 
@@ -197,12 +203,11 @@ mod tests {
     fn a_slope_of_the_light_on_one_side_alone_tells_how_far_it_moves_the_step() {
         let fit = StepFit::new(1.5, 7.5);
         for slope in [-0.7, 0.3] {
-            let light = |s: f64| slope * s.max(0.0) + 100.0 * normal_distribution(s / 1.5);
+            let light = |s: f64| slope * s.max(0.0) + 100.0 * normal_cdf(s / 1.5);
             let Step { place, one_sided, .. } = fit.of(&fit.offsets().iter().map(light).collect::<Vec<f64>>());
             assert!(place.abs() > 0.01 && (one_sided / place - 1.0).abs() < 0.02, "{one_sided} {place}");
         }
-        let even: Vec<f64> =
-            fit.offsets().iter().map(|s| 100.0 * normal_distribution((s - 0.01) / 1.5) + 0.5 * s).collect();
+        let even: Vec<f64> = fit.offsets().iter().map(|s| 100.0 * normal_cdf((s - 0.01) / 1.5) + 0.5 * s).collect();
         assert!(fit.of(&even).one_sided.abs() < 1e-4);
     }
 }
