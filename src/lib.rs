@@ -32,6 +32,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 mod adaptive_progress;
+mod error_chain;
 mod fitted_outline;
 mod followed_pose;
 mod frame_ranges;
@@ -56,6 +57,7 @@ mod velocity_unit;
 mod warning;
 
 pub use adaptive_progress::AdaptiveProgress;
+pub use error_chain::with_causes;
 pub use fitted_outline::{CurveDeviations, CurveParts, FittedOutline};
 pub use freeform_curve_fit as curve_fit;
 pub use freeform_decompose as decompose;
@@ -74,7 +76,6 @@ pub use pipeline_settings::PipelineSettings;
 pub use plane_by_outline::{PlaneByOutline, PlaneByOutlineError, plane_by_outline};
 pub use polygon::{outline_of_pixel_polygon, outline_of_polygon};
 pub use rectification::{Rectification, RectifyError};
-pub use rejection::with_causes;
 pub use tracker::{Tracker, TrackerSettings};
 pub use truth::{SimulatedMotion, Truth};
 pub use velocity_unit::VelocityUnit;

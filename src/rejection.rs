@@ -1,8 +1,8 @@
-use std::{error::Error, fmt};
+use std::fmt;
 
 use freeform_outline_filter::{FilterError, Rejection};
 
-use crate::{pipeline_error::PipelineError, rectification::RectifyError};
+use crate::{error_chain::with_causes, pipeline_error::PipelineError, rectification::RectifyError};
 
 /// Why a frame of an object was not used.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,19 +62,4 @@ pub(crate) fn write_state_lost(f: &mut fmt::Formatter<'_>, reason: &str) -> fmt:
         f,
         "what was known of the object could not be read back from the temporary file that it was kept in: {reason}"
     )
-}
-
-/// An error and what caused it, in one line, without what its own text already says.
-#[must_use]
-pub fn with_causes(error: &dyn Error) -> String {
-    let mut text = error.to_string();
-    let mut source = error.source();
-    while let Some(cause) = source {
-        let cause_text = cause.to_string();
-        if !text.contains(&cause_text) {
-            text = format!("{text}: {cause_text}");
-        }
-        source = cause.source();
-    }
-    text
 }

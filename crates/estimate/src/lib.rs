@@ -3,7 +3,8 @@
 //! - [`MotionEstimate`]: parameters with their standard deviations, or marked as not observable.
 //! - [`MotionState`]: pose and motion at one time with their joint covariance; the velocity of any point of the object
 //!   ([`PointVelocity`]).
-//! - [`smooth`]: a fixed-interval smoother, which estimates every state from all frames of a recording.
+//! - [`smooth`]: a fixed-interval smoother, which estimates every state from all frames of a recording; [`smooth_changing`] does so where the motion
+//!   changes, by what was expected of each state ([`ExpectedState`]).
 //! - [`ProcessNoise`]: how fast a motion may change.
 //! - [`CramerRaoBound`]: the smallest covariance of any unbiased estimator.
 //! - [`PlaneEstimate`] and [`PlaneBound`]: the same of a plane that moves in space.
@@ -21,6 +22,7 @@
 //! assert_eq!(known, ["omega", "b1"]);
 //! ```
 mod bound;
+mod changing_motion;
 mod information;
 mod motion_estimate;
 mod motion_state;
@@ -35,6 +37,7 @@ mod state_format;
 mod time;
 
 pub use bound::{BoundCovariance, BoundError, BoundaryPoint, CramerRaoBound};
+pub use changing_motion::{ExpectedState, smooth_changing};
 pub use information::{InverseInformation, invert_information, scaled_inverse, scaled_solution};
 pub use motion_estimate::{MotionEstimate, ParameterEstimate};
 pub use motion_state::{MotionState, NormalisedState, PoseParameter};

@@ -68,6 +68,19 @@ pub enum SmootherError {
 /// Times that do not increase; states of different runs. A run ends where the filter finds the object anew: its states before and after
 /// that are smoothed apart.
 pub fn smooth(states: &[MotionState], noise: &ProcessNoise) -> Result<Vec<MotionState>, SmootherError> {
+    check(states)?;
+    let mut smoothed = states.to_vec();
+    for t in (1..states.len()).rev() {
+        let (before, after) = smoothed.split_at_mut(t);
+        if let (Some(state), Some(next)) = (before.last_mut(), after.first()) {
+            take_back(state, next, noise);
+        }
+    }
+    Ok(smoothed)
+}
+
+/// Whether states are those of one run, in the order of their times.
+pub(crate) fn check(states: &[MotionState]) -> Result<(), SmootherError> {
     for (i, pair) in states.windows(2).enumerate() {
         let [a, b] = pair else { continue };
         let index = i + 1;
@@ -78,14 +91,7 @@ pub fn smooth(states: &[MotionState], noise: &ProcessNoise) -> Result<Vec<Motion
             return Err(SmootherError::AnotherRun { index });
         }
     }
-    let mut smoothed = states.to_vec();
-    for t in (1..states.len()).rev() {
-        let (before, after) = smoothed.split_at_mut(t);
-        if let (Some(state), Some(next)) = (before.last_mut(), after.first()) {
-            take_back(state, next, noise);
-        }
-    }
-    Ok(smoothed)
+    Ok(())
 }
 
 /// Corrects a filtered state by the smoothed one after it. Where numbers do not allow it the state stays as it was filtered.

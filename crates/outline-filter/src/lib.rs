@@ -2,9 +2,9 @@
 //! deviations. Its errors are near the Cramer-Rao bound from the third frame on. It is robust to hidden arcs, outliers and wrong frames.
 //!
 //! To begin with: the overview in `docs/motion-filter.md` of the repository says what happens to a frame, and where to change what. The rest of that
-//! document derives the equations, each with its code and test.
+//! document derives the equations, each with its code and test. The glossary at its end has the words of the code beside those of the field.
 //!
-//! The layers, from top to bottom. Each layer uses only the layers below it:
+//! The layers, from top to bottom. Each layer uses only the layers below it, which the test `documents.rs` of the repository checks:
 //!
 //! | layer | holds |
 //! |---|---|

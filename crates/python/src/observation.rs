@@ -102,14 +102,15 @@ impl PyObservation {
         self.inner.residual
     }
 
-    /// Squared innovation of the pose in units of its covariance (motion filter).
+    /// Normalised innovation squared (NIS): the innovation of the pose, squared in units of its covariance (motion filter).
     #[getter]
     fn innovation(&self) -> Option<f64> {
         self.inner.innovation
     }
 
-    /// Counted up where the object was given up and begun anew, where a frame has shown its turn for the first time, and where an edge was found not
-    /// to be of the object: nobody knows how far the object had turned between poses of different segments.
+    /// Counted up from 0 where poses get another reference: the object was begun anew, the second frame shows far more of it than the first, its turn
+    /// is shown for the first time, another of several turns is taken, or an edge proves not to be of it. Nobody knows how far the object had turned
+    /// between poses of different segments.
     #[getter]
     fn segment(&self) -> usize {
         self.inner.segment

@@ -156,7 +156,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_undoes_the_flow_of_every_model(
+        fn the_logarithm_undoes_the_flow_of_every_model(
             turn in -2.5_f64..2.5, rest in prop::array::uniform8(-0.4_f64..0.4), which in 0_usize..4,
         ) {
             let model = MotionModel::ALL[which];

@@ -77,12 +77,13 @@ pub(crate) struct IdentifyArgs {
     /// motion is not known: in the first frame, in a frame where a lost object is found again, while it is lost, and in a frame that is not
     /// an outline. While two turns explain the outlines the angle is empty, and so is the matrix, unless they are whole turns apart and it
     /// is the same for both. In a rejected frame the fields are the prediction. The column segment is a number that is counted up from 0
-    /// where the object was given up and begun anew, where a frame shows its turn for the first time, and where an edge was found not to be
-    /// of the object. Angles go on beyond half a turn and are counted within a segment: the turn between poses of different segments is not
-    /// known. v1 and v2 are the velocity of the middle of the object. The column reason says why a frame was not accepted, unstated which
-    /// values are empty and why, as in --trace. point_x and point_y are where that middle is, the point of the object that v1 and v2 belong
-    /// to: the centroid of what is known of its outline, or the point nearby whose motion the outline shows where it does not show that of
-    /// the centroid, as the centre of a disc of which half is seen. It need not be at x, y. Not available with the adaptive method.
+    /// where poses get another reference: the object was begun anew, the second frame shows far more of it than the first, its turn is shown
+    /// for the first time, another of several turns is taken, or an edge proves not to be of it. Angles go on beyond half a turn and are
+    /// counted within a segment: the turn between poses of different segments is not known. v1 and v2 are the velocity of the middle of the
+    /// object. The column reason says why a frame was not accepted, unstated which values are empty and why, as in --trace. point_x and
+    /// point_y are where that middle is, the point of the object that v1 and v2 belong to: the centroid of what is known of its outline, or
+    /// the point nearby whose motion the outline shows where it does not show that of the centroid, as the centre of a disc of which half is
+    /// seen. It need not be at x, y. Not available with the adaptive method.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) trajectory: Option<PathBuf>,
 

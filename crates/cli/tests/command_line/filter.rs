@@ -43,7 +43,7 @@ fn every_parameter_of_every_model_lies_within_five_standard_deviations_of_the_tr
 }
 
 #[test]
-fn hidden_arcs_and_outliers_do_not_lead_it_astray() {
+fn hidden_arcs_and_outliers_do_not_lead_the_filter_astray() {
     let csv = succeed("simulate --seconds 2 --occlusion 0.2 --outliers 0.05", "");
     let document = json(&succeed("identify - --format json", &csv));
     let omega = &first_object(&document)["parameters"]["omega"];

@@ -36,7 +36,7 @@ pub(crate) struct PlayedFrame {
     pub(crate) frame: u64,
     /// In seconds; `None` where the points are no outline.
     pub(crate) time: Option<f64>,
-    /// Counted up where the object was given up and begun anew, and where a frame has shown its turn for the first time.
+    /// Counted up from 0 where poses get another reference, as where the object was begun anew: `TrajectoryRow::segment` has all causes.
     pub(crate) segment: usize,
     pub(crate) phase: Option<ObjectPhase>,
     /// Why it was not used, if it was not.

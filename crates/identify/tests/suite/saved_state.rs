@@ -72,7 +72,7 @@ fn a_restored_identifier_goes_on_to_the_last_bit_for_every_model_law_and_choice_
 }
 
 #[test]
-fn after_a_frame_that_is_refused_it_is_as_the_saved_one_is() {
+fn after_a_frame_that_is_refused_a_restored_identifier_is_as_the_saved_one() {
     let mut straight = AdaptiveIdentifier::from_bytes(&saved(AdaptiveSettings::default(), 10)).expect("a saved state");
     let before = straight.to_bytes();
     assert!(straight.step(0.0, &starting_lines()).is_err());

@@ -185,13 +185,13 @@ mod tests {
     }
 
     #[test]
-    fn after_two_frames_it_is_the_error_of_the_first() {
+    fn after_two_frames_the_common_error_is_that_of_the_first() {
         let expected = of_two_frames()[1].fixed_view::<3, 3>(0, 0).into_owned();
         assert!((common_error().now.covariance.fixed_view::<3, 3>(0, 0) - expected).amax() < 1e-15);
     }
 
     #[test]
-    fn in_the_body_frame_it_is_the_same_wherever_the_object_has_gone() {
+    fn in_the_body_frame_the_common_error_is_the_same_wherever_the_object_has_gone() {
         let quarter = MotionModel::Rigid.flow(&[-std::f64::consts::FRAC_PI_2, 3.0, 1.0], 1.0).into_inner();
         let turned = CentredPose { pose: quarter, ..reference() };
         let [here, there] = [reference(), turned].map(|pose| common_error().of_body_frame(&pose).expect("a pose"));
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn it_grows_as_the_outline_that_is_seen_becomes_another_and_never_shrinks() {
+    fn the_common_error_grows_as_the_outline_that_is_seen_becomes_another_and_never_shrinks() {
         let [covariance, given_outline] = of_two_frames();
         let shift = SVector::from_element(0.1);
         for (times, kept) in [(0.5, true), (3.0, false)] {
@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn it_goes_along_with_the_object() {
+    fn the_common_error_goes_along_with_the_object() {
         let quarter = MotionModel::Rigid.flow(&[-std::f64::consts::FRAC_PI_2, 3.0, 1.0], 1.0).into_inner();
         let turned = CentredPose { pose: quarter, ..reference() };
         let [here, there] = [reference(), turned]

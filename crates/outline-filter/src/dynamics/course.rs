@@ -29,7 +29,7 @@ pub(super) enum Rates {
     ChangeAtRandom,
 }
 
-/// What the motion does between frames.
+/// What the motion does between frames: the mode of a hypothesis of the interacting multiple model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) enum Course {

@@ -4,7 +4,7 @@ use std::{fmt, str::FromStr};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Dynamics {
-    /// Three hypotheses side by side, weighted by their likelihoods: those below.
+    /// Hypotheses of three kinds, those below (25 in all), weighted by their likelihoods.
     #[default]
     Auto,
     /// The paper's constant generator: the velocity of the object's centroid turns with the object, as on a turntable. The path of the centroid
@@ -55,10 +55,10 @@ impl FromStr for Dynamics {
     }
 }
 
-/// Probabilities of the three hypotheses of dynamics given the frames so far; their sum is 1.
+/// Probabilities of the three kinds of hypotheses of dynamics given the frames so far; their sum is 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DynamicsWeights {
-    /// Of a constant generator.
+    /// Of a constant generator, also as a shaking camera sees it: poses have errors of their own then, others in every frame.
     pub generator: f64,
     /// Of constant rates and a constant velocity of a point of the body, the centroid or another.
     pub velocity: f64,
@@ -67,7 +67,7 @@ pub struct DynamicsWeights {
 }
 
 impl DynamicsWeights {
-    /// The most probable hypothesis.
+    /// The most probable kind.
     #[must_use]
     pub fn most_probable(&self) -> Dynamics {
         if self.generator >= self.velocity.max(self.accelerating) {

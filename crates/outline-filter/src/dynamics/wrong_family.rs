@@ -3,7 +3,7 @@ use freeform_riccati::MotionModel;
 use nalgebra::{SMatrix, SVector, Vector2};
 
 use crate::{
-    tuning::family::{ROWS_OF_OBJECT, SIGNIFICANT},
+    tuning::family as tuning,
     update::{EDGES, FOURTH_OF_EDGES, GROWTH, LENS, PERSPECTIVE, READ_OUT, SHEAR},
 };
 
@@ -77,8 +77,8 @@ pub(super) fn name_of(found: &[Found], read_out: f64, off_a_lens: f64) -> Option
     let name = match clearest {
         WrongFamily::Growth | WrongFamily::Shear | WrongFamily::Shape => clearest,
         _ if is_tilt(found) => WrongFamily::Perspective,
-        WrongFamily::Lens if is_alone && off_a_lens < SIGNIFICANT => clearest,
-        WrongFamily::RollingShutter if is_alone && ROWS_OF_OBJECT * read_out <= 1.0 => clearest,
+        WrongFamily::Lens if is_alone && off_a_lens < tuning::SIGNIFICANT => clearest,
+        WrongFamily::RollingShutter if is_alone && tuning::ROWS_OF_OBJECT * read_out <= 1.0 => clearest,
         _ => WrongFamily::Shape,
     };
     Some(name)

@@ -8,8 +8,8 @@ use crate::{
     vectors::vectorised,
 };
 
-/// A piece of the contour with the cells found for its points, and the window that tells its direction.
-struct Course<'a> {
+/// A piece of the contour with a direction: its places with the window that tells which way it runs past a cell.
+struct DirectedPiece<'a> {
     map: &'a OutlineMap,
     /// In the body frame.
     places: &'a [Point2<f64>],
@@ -17,7 +17,7 @@ struct Course<'a> {
     reach: usize,
 }
 
-impl Course<'_> {
+impl DirectedPiece<'_> {
     /// Number of the point so many places on from point i, back where `forth` is false, if there is one.
     fn beside(&self, i: usize, steps: usize, forth: bool) -> Option<usize> {
         let count = self.places.len();
@@ -108,18 +108,18 @@ impl View<'_> {
         for piece in pieces {
             let (numbers, weights) = (&mut numbers[piece.range()], &weights[piece.range()]);
             let of_points = Numbered { numbers, weights, cells: self.map.cells().len() };
-            let course = Course { map: self.map, places: &places[piece.range()], closed: piece.closed, reach };
+            let directed = DirectedPiece { map: self.map, places: &places[piece.range()], closed: piece.closed, reach };
             let count = weights.len();
             if count <= 2 * reach {
                 continue;
             }
             let (mut forth, mut total) = vectorised(
                 #[inline(always)]
-                || course.count_forth(&of_points),
+                || directed.count_forth(&of_points),
             );
             for i in (0..reach).chain(count - reach..count) {
                 if let Some(cell) = of_points.known(i) {
-                    forth += usize::from(course.along(i, cell) > 0.0);
+                    forth += usize::from(directed.along(i, cell) > 0.0);
                     total += 1;
                 }
             }
@@ -129,8 +129,8 @@ impl View<'_> {
             }
             for i in 0..count {
                 let Some(cell) = of_points.known(i) else { continue };
-                if sign * course.along(i, cell) < 0.0 {
-                    of_points.numbers[i] = course.cell_on_side(&of_points, i, sign).unwrap_or(cell) as u32;
+                if sign * directed.along(i, cell) < 0.0 {
+                    of_points.numbers[i] = directed.cell_on_side(&of_points, i, sign).unwrap_or(cell) as u32;
                 }
             }
         }

@@ -1,7 +1,6 @@
 //! Shape process noise: outlines that change slowly, as those of segmented pictures do, seen by innovations of the offsets that repeat.
 use crate::{
     belief::{Arrowhead, Belief, OffsetInformation},
-    measurement::{Counted, NoiseModel},
     tuning::shape_noise as tuning,
     vectors::vectorised,
 };
@@ -46,18 +45,18 @@ impl ShapeNoise {
     }
 
     /// Compares the innovations of the offsets with those of the frame before. `before` is the information that the cells had, now
-    /// held by the belief with the frame added; `shifts` are the corrections made. Where points count by deviations of their own, what less
-    /// than one good point tells of a cell is taken in its own deviations. `innovations` is room for a number for each cell.
+    /// held by the belief with the frame added; `shifts` are the corrections made. `sigma` is the deviation of the noise; where points do not count
+    /// alike but by deviations of their own, what less than one good point tells of a cell is taken in its own deviations. `innovations` is room for
+    /// a number for each cell.
     pub(crate) fn compare_innovations(
         &mut self,
         belief: &Belief,
         shifts: &[f64],
         before: &OffsetInformation,
-        noise: &NoiseModel,
+        (sigma, counts_alike): (f64, bool),
         innovations: &mut Vec<f64>,
     ) {
-        let scale = belief.scale() / noise.sigma;
-        let counts_alike = noise.counted == Counted::Alike;
+        let scale = belief.scale() / sigma;
         innovations.resize(shifts.len(), 0.0);
         let innovations = innovations.as_mut_slice();
         vectorised(

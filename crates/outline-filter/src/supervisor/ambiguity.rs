@@ -1,4 +1,5 @@
 use super::motion_filter::MotionFilter;
+use crate::tuning::turn_hypotheses as tuning;
 
 /// Turns of an object that its frames do not decide between.
 #[derive(Debug, Clone, PartialEq)]
@@ -6,10 +7,16 @@ pub struct Ambiguity {
     /// The turn taken, the smallest, in radians, anticlockwise where y points up: to the frame in which the object was last searched for
     /// and found, from the one before.
     pub turn: f64,
-    /// What it may have been instead, of those of [`MotionFilter::rival_turns`] that are less than twice the one taken.
+    /// What it may have been instead, of those of [`MotionFilter::rival_turns`] that are less than [`SURELY_SMALLER`](Self::SURELY_SMALLER) times the
+    /// one taken.
     pub rival_turns: Vec<f64>,
     /// Names of the parameters in which the motions differ, which are marked as unobservable for it.
     pub parameters: Vec<&'static str>,
+}
+
+impl Ambiguity {
+    /// The smallest turn is taken without a doubt if the others are so many times as large.
+    pub const SURELY_SMALLER: f64 = tuning::SURELY_SMALLER;
 }
 
 impl MotionFilter {

@@ -48,4 +48,9 @@ impl Counts {
         (self.accepted_by_track, self.rejected_by_track) = (frames, 0);
         (self.rejected_in_a_row, self.hidden_in_a_row, self.fruitless_starts) = (0, 0, 0);
     }
+
+    /// Times that poses got another reference, in a recording.
+    pub(super) fn segment(&self) -> usize {
+        self.restarts + self.begun_with_more + self.turned_elsewhere + self.begun_without_edge
+    }
 }

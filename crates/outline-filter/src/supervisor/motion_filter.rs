@@ -9,6 +9,7 @@ use super::{
     clock::Clock,
     counts::Counts,
     error::FilterError,
+    filter_step::FilterStep,
     motion_change::MotionHistory,
     repeated_frames::{BeforeRepeated, RepeatedFrames},
     search_memory::SearchMemory,
@@ -39,28 +40,6 @@ pub enum Phase {
     Tracking,
     /// The object was not found in the last frames. It is searched for in every frame; in fewer where that has been in vain for long.
     Lost,
-}
-
-/// The result of one frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FilterStep {
-    /// Time of the frame in seconds.
-    pub time: f64,
-    /// Phase after the frame.
-    pub phase: Phase,
-    /// Comparison with the known outline in the pose that was tried last; of a lost object that only a part of all turns has been searched for, where it
-    /// was expected. `None` if there was no outline or no pose to compare with, or the frame was not searched.
-    pub measurement: Option<FrameMeasurement>,
-    /// Why the frame was not used; `None` if it was used.
-    pub rejection: Option<Rejection>,
-}
-
-impl FilterStep {
-    /// Whether the frame was used.
-    #[must_use]
-    pub fn is_accepted(&self) -> bool {
-        self.rejection.is_none()
-    }
 }
 
 /// Identifies the motion of one object from its outlines, one frame after the other, in constant memory.
@@ -354,6 +333,14 @@ impl MotionFilter {
         self.counts.rejected_in_recording
     }
 
+    /// Mean share of the points of a frame that lie off the known outline together with their neighbours, from 0.08 on:
+    /// a part of the object moves by itself or bends, two objects are seen as one, or something covers it. What is stated is the motion of the rest.
+    /// `None` before six frames were taken, and below 0.08.
+    #[must_use]
+    pub fn disagreeing_part(&self) -> Option<f64> {
+        self.track()?.disagreeing_part()
+    }
+
     /// The other hypotheses of the turn, in radians, anticlockwise if y points up: turns of the object, up to the frame in which it was last
     /// searched for and found, that explain all frames since then about as well as the turn taken. Of equally good turns the smallest is
     /// taken. Empty for outlines without symmetry, unless they turn by more than a third of a circle: a whole turn more or less looks the
@@ -374,5 +361,13 @@ impl MotionFilter {
     #[must_use]
     pub fn restarts(&self) -> usize {
         self.counts.restarts
+    }
+
+    /// Counted up from 0 where poses get another reference: the object was [begun anew](Self::restarts), the second frame shows far more of it than
+    /// the first, its turn is shown for the first time (nobody knows how far it had turned until then), another of several turns is taken (as with
+    /// every tooth of a gear: the outline may have misled), or an [edge](Self::standing_edges) proves not to be of it.
+    #[must_use]
+    pub fn segment(&self) -> usize {
+        self.counts.segment()
     }
 }

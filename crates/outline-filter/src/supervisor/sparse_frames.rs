@@ -115,7 +115,7 @@ impl MotionFilter {
         self.turn_hypotheses = TurnHypotheses::default();
         self.search_memory.begin(first);
         self.counts.begin_with(all.len());
-        // Poses go back to the first of these frames again.
+        // If a restart among these frames has counted the segment up, poses now refer to an earlier frame than since then: a new number.
         self.counts.begun_with_more += usize::from(self.segment() != *segment);
         self.motion_changed = history.is_changing();
         let time = self.clock.last_frame;

@@ -5,7 +5,7 @@ use super::{
 };
 use crate::{
     belief::Belief,
-    measurement::{Frame, NoiseModel, PointOnCell},
+    measurement::{Counted, Frame, NoiseModel, PointOnCell},
     prediction::ShapeNoise,
     vectors::vectorised,
 };
@@ -25,7 +25,8 @@ pub(crate) fn commit(
     belief.pose = proposal.pose;
     (0..k).for_each(|i| belief.motion[i] += proposal.state[k + i]);
     belief.offsets.iter_mut().zip(&frame.shifts).for_each(|(offset, shift)| *offset += shift);
-    shape.compare_innovations(belief, &frame.shifts, &cells_before, noise, &mut frame.values);
+    let of_noise = (noise.sigma, noise.counted == Counted::Alike);
+    shape.compare_innovations(belief, &frame.shifts, &cells_before, of_noise, &mut frame.values);
     // Room for the next frame.
     frame.cells_with_frame = cells_before;
     let own = belief.information.cells.own();

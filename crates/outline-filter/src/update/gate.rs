@@ -19,8 +19,9 @@ pub struct FrameMeasurement {
     pub agreement: f64,
     /// Points that lie beyond the known ends of the outline.
     pub new_points: usize,
-    /// Squared innovation of the pose in units of its covariance. On average about the number of parameters, if the motion has not
-    /// changed.
+    /// Normalised innovation squared (NIS): the innovation of the pose, squared in units of its covariance. On average about the number of
+    /// parameters, if the motion has not changed.
+    #[doc(alias = "NIS")]
     pub innovation: f64,
     /// Linearisations taken.
     pub iterations: usize,
@@ -45,7 +46,7 @@ pub enum Rejection {
     },
     /// The frame shows the outline, but not at the place predicted by the motion, as linearisations tell it.
     InnovationTooLarge {
-        /// Squared innovation of the pose, as in [`FrameMeasurement::innovation`].
+        /// Normalised innovation squared (NIS) of the pose, as in [`FrameMeasurement::innovation`].
         innovation: f64,
         /// Largest accepted value.
         largest: f64,
@@ -67,7 +68,9 @@ pub enum Rejection {
     /// All but a few points lie along [edges](crate::MotionFilter::standing_edges) that are not of the object, which may be behind them. That says nothing
     /// against what is known of it.
     Hidden,
-    /// No pose was found, or none that linearisations settle in, or none was looked for, as too many frames have been searched in vain.
+    /// No pose was found, or none that linearisations settle in; or none was looked for, as too many frames have been searched in vain, or as the
+    /// frame has too few points to confirm the step between two frames that show parts of the object; or a third frame does not bear out that step,
+    /// the only one known, so that the map is begun anew with it.
     NotFound,
 }
 
@@ -84,7 +87,7 @@ impl Rejection {
     }
 }
 
-/// Conditions for accepting a frame. The limits are set by the `supervisor` (`tracking::gate`, `tracking::Gates`); that on noise is
+/// Conditions for accepting a frame. The limits are set by the `supervisor` (`gates::gate`, `gates::Gates`); that on noise is
 /// [`View::largest_noise`], which `Track::verdict` widens.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Gate {
@@ -293,7 +296,8 @@ fn told_alike(columns: &Columns, own: &[f64], limit: f64, values: &mut [f64]) ->
     Told { known: known as f64, agreeing: agreeing as f64, new: new_points as f64, new_points, told }
 }
 
-/// In place of the information of no cell, and of the size or square of a point that tells nothing: no number that any of them may be.
+/// Sentinel for "no cell" (in place of its information) or "tells nothing" (in place of the size or square of a residual) in vectorised loops, where
+/// an `Option` would branch. Real values are never negative.
 pub(super) const NONE: f64 = -1.0;
 
 /// What a squared residual would be without its point's own share of the information on the offset of its cell, in units of what it is, and

@@ -38,7 +38,7 @@ fn a_restored_filter_goes_on_to_the_last_bit_for_every_model_and_at_every_frame(
 }
 
 #[test]
-fn it_does_so_through_hidden_arcs_outliers_wrong_frames_and_gaps() {
+fn a_restored_filter_goes_on_alike_through_hidden_arcs_outliers_wrong_frames_and_gaps() {
     let hard = Settings {
         occlusion: Occlusion { fraction: 0.3, ..Occlusion::default() },
         outliers: 0.05,
@@ -50,14 +50,14 @@ fn it_does_so_through_hidden_arcs_outliers_wrong_frames_and_gaps() {
 }
 
 #[test]
-fn it_does_so_while_turns_are_in_doubt_and_where_none_is_seen() {
+fn a_restored_filter_goes_on_alike_while_turns_are_in_doubt_and_where_none_is_seen() {
     for shape in [BuiltInShape::Ellipse, BuiltInShape::Square, BuiltInShape::Circle, BuiltInShape::CdBox] {
         assert_goes_on_alike(MotionModel::Rigid, &frames_of(shape, MOTION, settings(15, 3)), 1);
     }
 }
 
 #[test]
-fn it_does_so_while_the_motion_changes_and_after_the_object_was_lost() {
+fn a_restored_filter_goes_on_alike_while_the_motion_changes_and_after_the_object_was_lost() {
     let turned = AffineMotion::from(RigidMotion { omega: -1.0, b1: 0.5, b2: 0.1 });
     let motion = Motion::piecewise(vec![(0.0, MOTION.into()), (0.7, turned)]).expect("two phases");
     let mut frames = frames_of(BuiltInShape::Bird, motion, settings(60, 4));
@@ -69,7 +69,7 @@ fn it_does_so_while_the_motion_changes_and_after_the_object_was_lost() {
 }
 
 #[test]
-fn it_does_so_whatever_the_dynamics_and_whatever_the_outlines_do_beside_their_motion() {
+fn a_restored_filter_goes_on_alike_whatever_the_dynamics_and_whatever_the_outlines_do_beside_their_motion() {
     // Along a parabola, by a camera that comes nearer: what the model leaves out is told, and errors are widened by it.
     let mut frames = frames_of(BuiltInShape::Van, RigidMotion { omega: 2.0, b1: 0.0, b2: 0.0 }, settings(100, 9));
     for frame in &mut frames {
@@ -86,7 +86,7 @@ fn it_does_so_whatever_the_dynamics_and_whatever_the_outlines_do_beside_their_mo
 }
 
 #[test]
-fn it_does_so_whether_a_second_is_a_nanosecond_or_a_year() {
+fn a_restored_filter_goes_on_alike_whether_a_second_is_a_nanosecond_or_a_year() {
     for unit in [1e-9, 3e7] {
         let mut frames = frames_of(BuiltInShape::Bird, MOTION, settings(10, 10));
         frames.iter_mut().for_each(|frame| frame.time *= unit);

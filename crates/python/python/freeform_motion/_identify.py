@@ -182,9 +182,9 @@ def track(
     table
         Of the kind of `data`, a dict of arrays for masks and outlines. One row per object and frame, in the order of the data: `object`, `frame`,
         `time`, `phase`, `accepted`; the pose (motion filter), for a rigid motion `angle`, `x` and `y`, each with its `_std`; the motion, for
-        a rigid one `omega`, `b1` and `b2`, each with its `_std`; `segment`, counted up where an object was given up and begun anew, or has
-        shown its turn for the first time, since nobody knows how far it had turned until then, and where an edge was found not to be of the
-        object; `v1` and `v2`, each with its `_std`, the velocity of
+        a rigid one `omega`, `b1` and `b2`, each with its `_std`; `segment`, counted up from 0 where poses get another reference: the object was
+        begun anew, the second frame shows far more of it than the first, its turn is shown for the first time, another of several turns is
+        taken, or an edge proves not to be of it; `v1` and `v2`, each with its `_std`, the velocity of
         the middle of the object (motion filter), in the unit of `x` and `y` per second; `reason`, why the frame was not accepted; `unstated`,
         which values of the row are not stated and why, such as `omega ambiguous; b1 ambiguous`, by the words of `Observation.not_stated`;
         `point_x` and `point_y`, where that middle is (motion filter), which need not be at `x` and `y`.

@@ -3,8 +3,8 @@ use freeform_curve_fit::Outline;
 use freeform_riccati::MotionModel;
 
 use super::{
-    counts::Counts,
-    motion_filter::{FilterStep, MotionFilter, Phase},
+    filter_step::FilterStep,
+    motion_filter::{MotionFilter, Phase},
 };
 use crate::{
     occlusion::StandingEdge,
@@ -27,25 +27,6 @@ impl MotionFilter {
         self.edges.former()
     }
 
-    /// Mean share of the points of a frame that lie off the known outline together with their neighbours, from 0.08 on:
-    /// a part of the object moves by itself or bends, two objects are seen as one, or something covers it. What is stated is the motion of the rest.
-    /// `None` before six frames were taken, and below 0.08.
-    #[must_use]
-    pub fn disagreeing_part(&self) -> Option<f64> {
-        self.track()?.disagreeing_part()
-    }
-
-    /// Counted up from 0 where poses no longer go back to the same first outline: after a [restart](Self::restarts), where a second frame has shown far
-    /// more of the object than the first, and where a frame has shown the
-    /// turn of the object for the first time, since nobody knows how far it had turned until then, and where an [edge](Self::standing_edges) was
-    /// found not to be of the object. So it is where a frame agrees with the turn that the motion has led to, as with every tooth of a gear, and another
-    /// one is taken that explains it better: the outline may have misled.
-    #[must_use]
-    pub fn segment(&self) -> usize {
-        let Counts { restarts, begun_with_more, turned_elsewhere, begun_without_edge, .. } = self.counts;
-        restarts + begun_with_more + turned_elsewhere + begun_without_edge
-    }
-
     /// Looks at the outline of a frame at a time in seconds; whether it shows an edge that was not known.
     pub(super) fn look_for_edges(&mut self, outline: &Outline, seconds: f64) -> bool {
         let all_agrees = self.all_agrees();
@@ -56,17 +37,6 @@ impl MotionFilter {
     fn all_agrees(&self) -> bool {
         let is_taken = self.phase == Phase::Tracking && self.counts.rejected_in_a_row == 0;
         is_taken && self.track.as_ref().is_some_and(Track::usually_agrees)
-    }
-
-    /// The step of a frame that a map was begun with.
-    pub(super) fn begun(&mut self, seconds: f64) -> FilterStep {
-        self.counts.accepted_in_recording += 1;
-        self.step_unmeasured(seconds, None)
-    }
-
-    /// The step of a frame that was compared with nothing.
-    pub(super) fn step_unmeasured(&self, seconds: f64, rejection: Option<Rejection>) -> FilterStep {
-        FilterStep { time: seconds, phase: self.phase, measurement: None, rejection }
     }
 
     /// Whether the map holds an edge that was just found as a side of the object, as it does where the object was cut off by it from the beginning on.
