@@ -2,15 +2,19 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use freeform_estimate::{MotionState, PoseParameter};
+use freeform_outline_filter::Ambiguity;
 
-/// Steps of the usual length in which an object may go unseen without whole turns being in doubt: it turns by less than half a circle from frame to frame.
+/// In shortest steps so far, up to which a step leaves no whole turns open: the object turns by less than half a circle from frame to frame. It is
+/// half way to a missing frame, which makes two. `UNSEEN_STEPS` of the motion filter is 1.75 since it has another base, the step before, and another
+/// consequence: the object may be lost, so that steps of 2 and 3 in turn (24 pictures a second shown at 60) must be below it. Here such a step is
+/// only counted, and widens no deviation unless the angular velocity leaves turns open.
 const LONGEST_STEP: f64 = 1.5;
-/// Turns beyond what was expected of which one the other way round is less than twice as large, rad: nobody knows which of them it was. That is how the
-/// motion filter tells turns apart.
-const EITHER_WAY: f64 = TAU / 3.0;
+/// Turns beyond what was expected of which one the other way round is not [`Ambiguity::SURELY_SMALLER`] times as large, rad: nobody knows which of
+/// them it was.
+const EITHER_WAY: f64 = TAU / (1.0 + Ambiguity::SURELY_SMALLER);
 
-/// The angle of the poses of an object, continuous over time. Of the whole turns that it may have made since the pose before, those are counted that its
-/// angular velocity has made, the mean of those known last before and first afterwards; the fewest where none is known.
+/// Phase unwrapping: the angle of the poses of an object, continuous over time. Of the whole turns that it may have made since the pose before, those
+/// are counted that its angular velocity has made, the mean of those known last before and first afterwards; the fewest where none is known.
 ///
 /// Where an object was not seen for long, and its angular velocity is not known well enough, is not known yet, or was another one before than it is
 /// afterwards, whole turns may have been missed. So they may where it was seen to have turned by more than a third of a circle beyond what was expected,

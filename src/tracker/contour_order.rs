@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_told_once_and_of_the_first_frames_alone() {
+    fn points_out_of_order_are_told_once_and_of_the_first_frames_alone() {
         let in_order = star(5, 100);
         let shuffled = reordered(&in_order, |points| points.shuffle(&mut ChaCha8Rng::seed_from_u64(1)));
         let frame = |frame: u64, outline: &Outline| OutlineFrame {

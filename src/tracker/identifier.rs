@@ -2,7 +2,7 @@
 use std::sync::Arc;
 
 use freeform_curve_fit::Outline;
-use freeform_estimate::{MotionEstimate, PlaneEstimate, PointVelocity};
+use freeform_estimate::{ExpectedState, MotionEstimate, PlaneEstimate, PointVelocity};
 use freeform_outline_filter::{Ambiguity, DynamicsWeights, KnownOutline, MotionFilter, PlaneAmbiguity, PlaneFilter};
 use nalgebra::DMatrix;
 
@@ -67,6 +67,14 @@ impl Identifier {
             Self::Plane(object) => Arc::make_mut(object).push(time, outline),
             #[cfg(feature = "serde")]
             Self::Resting(_) => Step::default(),
+        }
+    }
+
+    /// What is expected of the object at a time in seconds.
+    pub(super) fn expected_state(&self, time: f64) -> Option<ExpectedState> {
+        match self {
+            Self::Filter(object) => object.filter.expected_state(time),
+            _ => None,
         }
     }
 

@@ -36,7 +36,7 @@ use freeform_outline_io::OutlineFrame;
 
 use self::{
     identifier::Identifier,
-    object::{KnownOutlines, TrackedObject},
+    object::{ExpectedStates, KnownOutlines, TrackedObject},
 };
 
 #[cfg(feature = "serde")]
@@ -96,6 +96,7 @@ pub struct Tracker {
     unused: Identifier,
     /// Objects whose observations hold what is known of the outline.
     known_outlines_of: usize,
+    expected_states: ExpectedStates,
     objects: Objects,
     #[cfg(feature = "serde")]
     rest: Option<resting::Rest>,
@@ -120,6 +121,7 @@ impl Tracker {
             settings,
             unused,
             known_outlines_of: 0,
+            expected_states: ExpectedStates::LeftOut,
             objects: Objects::default(),
             #[cfg(feature = "serde")]
             rest: None,
@@ -148,6 +150,12 @@ impl Tracker {
     #[must_use]
     pub fn with_known_outlines(self, objects: usize) -> Self {
         Self { known_outlines_of: objects, ..self }
+    }
+
+    /// From now on the observations of new objects hold what was expected before each frame ([`Observation::expected`]), which
+    /// [`Trajectory::smooth`] needs where the motion of an object changes (motion filter). A frame takes about twice as long.
+    pub fn record_expected_states(&mut self) {
+        self.expected_states = ExpectedStates::Given;
     }
 
     /// Its settings.
@@ -224,6 +232,7 @@ impl Tracker {
     fn new_object(&self, name: &str, position: usize) -> TrackedObject {
         let known_outline =
             if position < self.known_outlines_of { KnownOutlines::Given } else { KnownOutlines::LeftOut };
-        TrackedObject::new(name.to_owned(), self.unused.clone(), &self.settings, known_outline)
+        let extras = (known_outline, self.expected_states);
+        TrackedObject::new(name.to_owned(), self.unused.clone(), &self.settings, extras)
     }
 }

@@ -25,6 +25,7 @@ pub(super) struct TrackedObject {
     pub(super) rectification: Option<Rectification>,
     pub(super) contour_order: ContourOrder,
     pub(super) known_outline: KnownOutlines,
+    pub(super) expected_states: ExpectedStates,
     pub(super) frames: usize,
     pub(super) rejected: usize,
     /// The first of them.
@@ -40,13 +41,20 @@ pub(super) enum KnownOutlines {
     LeftOut,
 }
 
+/// Whether observations hold what was expected of an object, which smoothing needs where its motion changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ExpectedStates {
+    Given,
+    LeftOut,
+}
+
 impl TrackedObject {
     /// A new object without frames.
     pub(super) fn new(
         name: String,
         identifier: Identifier,
         settings: &TrackerSettings,
-        known_outline: KnownOutlines,
+        (known_outline, expected_states): (KnownOutlines, ExpectedStates),
     ) -> Self {
         Self {
             name,
@@ -55,6 +63,7 @@ impl TrackedObject {
             rectification: settings.rectification,
             contour_order: ContourOrder::default(),
             known_outline,
+            expected_states,
             frames: 0,
             rejected: 0,
             rejections: Vec::new(),
@@ -82,6 +91,10 @@ impl TrackedObject {
                 return Observation { time: Some(frame.time), ..unusable };
             }
         };
+        let expected = match self.expected_states {
+            ExpectedStates::Given => self.identifier.expected_state(frame.time).map(Box::new),
+            ExpectedStates::LeftOut => None,
+        };
         let step = self.identifier.push(frame.time, in_plane.as_ref().unwrap_or(seen));
         let rejection = self.count(frame.frame, step.rejected_because);
         Observation {
@@ -95,6 +108,7 @@ impl TrackedObject {
             hides_velocity: step.hides_velocity,
             plane: step.plane,
             state: step.state,
+            expected,
             fit: step.fit,
             progress: step.progress,
             residual: step.residual,
@@ -149,6 +163,7 @@ impl TrackedObject {
             hides_velocity: false,
             plane: None,
             state: None,
+            expected: None,
             fit: None,
             progress: None,
             residual: None,

@@ -1,7 +1,7 @@
 use std::fmt;
 
 use freeform_curve_fit::Fit;
-use freeform_estimate::{MotionEstimate, MotionState, ParameterEstimate, PlaneEstimate, PointVelocity};
+use freeform_estimate::{ExpectedState, MotionEstimate, MotionState, ParameterEstimate, PlaneEstimate, PointVelocity};
 use freeform_outline_filter::{Ambiguity, KnownOutline, Phase, PlaneAmbiguity};
 
 use super::result::parameters_of;
@@ -34,13 +34,17 @@ pub struct Observation {
     /// Pose and motion with their joint covariance, in the image (motion filter). The state is the last one known: while the object is lost,
     /// its time is before that of the frame.
     pub state: Option<MotionState>,
+    /// What was expected of the object before the frame was looked at, in the image, for the objects of a tracker that
+    /// [records it](super::Tracker::record_expected_states) (motion filter).
+    pub expected: Option<Box<ExpectedState>>,
     /// The curve fitted to the outline (adaptive method).
     pub fit: Option<Fit>,
     /// What the adaptive law is doing (adaptive method).
     pub progress: Option<AdaptiveProgress>,
     /// Adaptive method: root mean square distance of the points from the curve. Motion filter: noise of this frame. In image lengths.
     pub residual: Option<f64>,
-    /// Squared Mahalanobis norm of the innovation of the pose in units of its predicted covariance (motion filter).
+    /// Normalised innovation squared (NIS): the squared Mahalanobis norm of the innovation of the pose by its predicted covariance (motion filter).
+    #[doc(alias = "NIS")]
     pub innovation: Option<f64>,
     /// Turns between which the outlines so far do not decide (motion filter).
     pub ambiguity: Option<Ambiguity>,

@@ -12,7 +12,7 @@ use super::{
     contour_order::{ContourOrder, FRAMES},
     filtered_object::FilteredObject,
     identifier::Identifier,
-    object::{KnownOutlines, REJECTIONS_KEPT, TrackedObject},
+    object::{ExpectedStates, KnownOutlines, REJECTIONS_KEPT, TrackedObject},
     settings::{MethodSettings, TrackerSettings},
 };
 use crate::frame_ranges::FrameRanges;
@@ -238,6 +238,7 @@ fn restored(saved: SavedObject, settings: &TrackerSettings) -> Result<TrackedObj
         rectification: settings.rectification,
         contour_order: ContourOrder { seen: frames_looked_at, warning },
         known_outline: KnownOutlines::LeftOut,
+        expected_states: ExpectedStates::LeftOut,
         frames,
         rejected,
         rejections: rejections.collect(),

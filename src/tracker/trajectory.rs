@@ -2,7 +2,8 @@
 use std::collections::HashMap;
 
 use freeform_estimate::{
-    MotionEstimate, MotionState, PointVelocity, PoseParameter, ProcessNoise, SmootherError, smooth,
+    ExpectedState, MotionEstimate, MotionState, PointVelocity, PoseParameter, ProcessNoise, SmootherError, smooth,
+    smooth_changing,
 };
 use freeform_riccati::{CameraScale, MotionModel};
 
@@ -56,11 +57,14 @@ pub struct TrajectoryRow {
     pub accepted: bool,
     /// Why the frame was not used, where it was not.
     pub rejection: Option<FrameRejection>,
-    /// Counted up from 0 where the object was given up and begun anew, where a frame has shown its turn for the first time, and where an edge was
-    /// found not to be of the object: nobody knows how far the object had turned between poses of different segments.
+    /// Counted up from 0 where poses get another reference: the object was begun anew, the second frame shows far more of it than the first, its turn
+    /// is shown for the first time, another of several turns is taken, or an edge proves not to be of it. Poses of different segments cannot be
+    /// compared: nobody knows how far the object had turned between them.
     pub segment: usize,
     /// The state known then, at a time up to that of the frame.
     state: Option<MotionState>,
+    /// What was expected of it, where the tracker recorded that.
+    expected: Option<Box<ExpectedState>>,
     /// Why each parameter of the motion that was not stated then was not, and the turn of the pose, where it was not.
     not_stated: Vec<(&'static str, NotStated)>,
     turn_not_stated: NotStated,
@@ -93,8 +97,8 @@ pub struct NotSmoothed {
 /// Why the poses of an object cannot be smoothed.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum SmoothingError {
-    /// The motion of the object changed.
-    #[error("the motion changed, and the smoother assumes a constant one")]
+    /// The motion of the object changed, and no observation holds what was expected of it.
+    #[error("the motion changed, and the tracker has not recorded what was expected in each frame")]
     MotionChanged,
     /// The states do not form one sequence.
     #[error(transparent)]
@@ -153,6 +157,7 @@ impl Trajectory {
             segment: observation.segment,
             rejection: observation.rejection.clone(),
             state: observation.state.clone(),
+            expected: observation.expected.clone(),
             not_stated: motion.map_or_else(Vec::new, |motion| observation.unstated(motion.model())),
             turn_not_stated: observation.turn_not_stated(),
             turn_ambiguity: TurnAmbiguity::of(observation),
@@ -200,8 +205,11 @@ impl Trajectory {
     /// Lets later frames take part, object by object, within each run of frames through which an object was followed. The frames that such a run
     /// began with, when the motion was not known yet, get their poses from the ones after them. `tracker` is the one that followed the objects.
     ///
-    /// Returns the objects that are not smoothed, in the order of their first rows: above all those whose motion was seen to change, as the
-    /// smoother assumes a constant one. Their rows stay as filtered.
+    /// A motion that was not seen to change is taken for constant. One that was is smoothed by what was expected of each frame from those before it
+    /// ([`smooth_changing`]), if the tracker [recorded](Tracker::record_expected_states) that; of a sudden change nothing is handed back to the frames
+    /// before.
+    ///
+    /// Returns the objects that are not smoothed, in the order of their first rows. Their rows stay as filtered.
     #[must_use = "some objects may not be smoothed"]
     pub fn smooth(&mut self, tracker: &Tracker) -> Vec<NotSmoothed> {
         let noise = match &tracker.settings().method {
@@ -219,47 +227,76 @@ impl Trajectory {
         }
         let not_smoothed = objects.into_iter().filter_map(|mut rows| {
             let object = rows.first()?.object.clone();
-            let smoothed = if tracker.motion_of_object_changed(&object) {
-                Err(SmoothingError::MotionChanged)
-            } else {
-                smooth_object(&mut rows, &noise)
+            let smoother = match tracker.motion_of_object_changed(&object) {
+                false => Smoother::ConstantMotion(noise),
+                true if rows.iter().any(|row| row.expected.is_some()) => Smoother::ByExpectation,
+                true => return Some(NotSmoothed { object, reason: SmoothingError::MotionChanged }),
             };
-            smoothed.err().map(|reason| NotSmoothed { object, reason })
+            smooth_object(&mut rows, smoother).err().map(|reason| NotSmoothed { object, reason })
         });
         not_smoothed.collect()
     }
 }
 
+/// How later frames take part.
+#[derive(Debug, Clone, Copy)]
+enum Smoother {
+    /// Of a motion that changes by no more than this.
+    ConstantMotion(ProcessNoise),
+    /// By what was expected of each frame.
+    ByExpectation,
+}
+
 /// Smooths the rows of an object, or none of them.
-fn smooth_object(rows: &mut [&mut TrajectoryRow], noise: &ProcessNoise) -> Result<(), SmoothingError> {
+fn smooth_object(rows: &mut [&mut TrajectoryRow], smoother: Smoother) -> Result<(), SmoothingError> {
     let followed: Vec<bool> = rows.iter().map(|row| row.state.is_some()).collect();
     let (mut start, mut smoothed) = (0, Vec::new());
     for run in followed.chunk_by(|a, b| a == b) {
         if run[0] {
-            let filtered: Vec<MotionState> =
-                rows[start..start + run.len()].iter().filter_map(|row| row.state().cloned()).collect();
-            smoothed.push((start, run.len(), smooth(&filtered, noise)?));
+            let known = || rows[start..start + run.len()].iter().filter(|row| row.state().is_some());
+            let filtered: Vec<MotionState> = known().filter_map(|row| row.state().cloned()).collect();
+            let states = match &smoother {
+                Smoother::ConstantMotion(noise) => smooth(&filtered, noise)?,
+                Smoother::ByExpectation => {
+                    let expected: Vec<_> = known().map(|row| row.expected.as_deref().cloned()).collect();
+                    smooth_changing(&filtered, &expected)?
+                }
+            };
+            smoothed.push((start, run.len(), states));
         }
         start += run.len();
     }
     for (start, count, states) in smoothed {
         let (before, from) = rows.split_at_mut(start);
-        // What the last frame does not tell of a constant motion, for an ambiguous turn say, none does; what it tells, all do.
-        let velocity_not_stated = from[count - 1].velocity_not_stated;
-        let last = from[..count].iter().rev().find(|row| row.state().is_some());
-        let turn_ambiguity = last.map_or(TurnAmbiguity::Unambiguous, |row| row.turn_ambiguity);
-        let (segment, first) = (from[0].segment, &states[0]);
-        let is_of_beginning =
-            |row: &&mut &mut TrajectoryRow| row.accepted && row.segment == segment && row.state.is_none();
-        for row in before.iter_mut().rev().take_while(is_of_beginning) {
-            row.state = row.time.map(|time| first.predicted(time, noise));
-            (row.velocity_not_stated, row.turn_ambiguity) = (velocity_not_stated, turn_ambiguity);
+        let run = &mut from[..count];
+        if let Smoother::ConstantMotion(noise) = &smoother {
+            tell_all_of_constant_motion(before, run, &states[0], noise);
         }
-        let known = from[..count].iter_mut().filter(|row| row.state().is_some());
-        known.zip(states).for_each(|(row, state)| {
-            row.state = Some(state);
-            (row.velocity_not_stated, row.turn_ambiguity) = (velocity_not_stated, turn_ambiguity);
-        });
+        let known = run.iter_mut().filter(|row| row.state().is_some());
+        known.zip(states).for_each(|(row, state)| row.state = Some(state));
     }
     Ok(())
+}
+
+/// What the last frame of a run does not tell of a constant motion, for an ambiguous turn say, none does; what it tells, all do, those too that the
+/// run began with, when the motion was not known yet. `first` is the first smoothed state.
+fn tell_all_of_constant_motion(
+    before: &mut [&mut TrajectoryRow],
+    run: &mut [&mut TrajectoryRow],
+    first: &MotionState,
+    noise: &ProcessNoise,
+) {
+    let velocity_not_stated = run[run.len() - 1].velocity_not_stated;
+    let last = run.iter().rev().find(|row| row.state().is_some());
+    let turn_ambiguity = last.map_or(TurnAmbiguity::Unambiguous, |row| row.turn_ambiguity);
+    let segment = run[0].segment;
+    let is_of_beginning =
+        |row: &&mut &mut TrajectoryRow| row.accepted && row.segment == segment && row.state.is_none();
+    for row in before.iter_mut().rev().take_while(is_of_beginning) {
+        row.state = row.time.map(|time| first.predicted(time, noise));
+        (row.velocity_not_stated, row.turn_ambiguity) = (velocity_not_stated, turn_ambiguity);
+    }
+    for row in run.iter_mut().filter(|row| row.state().is_some()) {
+        (row.velocity_not_stated, row.turn_ambiguity) = (velocity_not_stated, turn_ambiguity);
+    }
 }

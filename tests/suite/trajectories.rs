@@ -17,6 +17,14 @@ fn followed(outlines: impl Iterator<Item = OutlineFrame>) -> (Tracker, Trajector
     (tracker, trajectory)
 }
 
+/// As [`followed`], with what smoothing needs where the motion changes.
+fn followed_for_smoothing(outlines: impl Iterator<Item = OutlineFrame>) -> (Tracker, Trajectory) {
+    let (mut tracker, mut trajectory) = (tracker(Method::Filter), Trajectory::default());
+    tracker.record_expected_states();
+    tracker.follow(outlines, |observation: Observation| trajectory.take(&observation));
+    (tracker, trajectory)
+}
+
 #[test]
 fn angles_of_a_trajectory_go_on_beyond_half_a_turn() {
     let (_, trajectory) = followed((0..60).map(|frame| egg(frame, 0.2 * frame as f64, 0.0)));
@@ -109,20 +117,69 @@ fn smoothing_fills_the_first_frame_and_leaves_no_pose_less_certain() {
     }
 }
 
-#[test]
-fn objects_whose_motion_changed_are_not_smoothed_and_the_others_are() {
+/// A bird that swings to and fro as it turns.
+fn swinging() -> impl Iterator<Item = OutlineFrame> {
     let still = seen_as("bird", (BuiltInShape::Bird, RigidMotion::default()), 120, 150);
-    let swinging = still.into_iter().map(|frame| {
-        let turn = Rotation2::new(0.5 * frame.time + 0.5 * (1.5 * frame.time).sin());
+    still.into_iter().map(|frame| {
+        let turn = Rotation2::new(turn_of_swinging(frame.time));
         let points = frame.outline.points().map(|point| turn * point).collect();
         OutlineFrame { outline: Outline::closed(points).expect("a turned outline"), ..frame }
-    });
+    })
+}
+
+fn turn_of_swinging(time: f64) -> f64 {
+    0.5 * time + 0.5 * (1.5 * time).sin()
+}
+
+#[test]
+fn objects_whose_motion_changed_are_not_smoothed_without_what_was_expected_of_them_and_the_others_are() {
     let constant = (0..120).map(|frame| egg(frame, 0.05 * frame as f64, 0.0));
-    let (tracker, filtered) = followed(swinging.zip(constant).flat_map(|(swinging, egg)| [swinging, egg]));
+    let (tracker, filtered) = followed(swinging().zip(constant).flat_map(|(swinging, egg)| [swinging, egg]));
     let mut smoothed = filtered.clone();
     let changed = NotSmoothed { object: "bird".into(), reason: SmoothingError::MotionChanged };
     assert_eq!(smoothed.smooth(&tracker), [changed]);
     for (before, after) in filtered.rows().iter().zip(smoothed.rows()).take(100) {
         assert_eq!(before == after, before.object == "bird", "{before:?}");
+    }
+}
+
+#[test]
+fn a_changing_motion_is_smoothed_to_smaller_errors_within_its_deviations() {
+    let (tracker, filtered) = followed_for_smoothing(swinging());
+    assert!(tracker.motion_of_object_changed("bird"));
+    let mut smoothed = filtered.clone();
+    assert_eq!(smoothed.smooth(&tracker), []);
+    // Of omega from the sixteenth frame on: mean squares of errors, of errors in their deviations, and of deviations.
+    let sums = |trajectory: &Trajectory| {
+        let (mut sums, mut count) = ([0.0; 3], 0.0);
+        for (row, known) in trajectory.rows().iter().zip(trajectory.poses(None)).skip(15) {
+            let omega = known.and_then(|known| known.motion.parameters().next()).expect("a motion");
+            let Some((value, deviation)) = omega.value.zip(omega.standard_deviation) else { continue };
+            // Positive clockwise.
+            let truth = -(0.5 + 0.75 * (1.5 * row.time.expect("a time")).cos());
+            let error = value - truth;
+            let squares = [error.powi(2), (error / deviation).powi(2), deviation.powi(2)];
+            sums.iter_mut().zip(squares).for_each(|(sum, square)| *sum += square);
+            count += 1.0;
+        }
+        assert!(count > 80.0, "{count}");
+        sums.map(|sum| sum / count)
+    };
+    let ([error, _, deviation], [smoothed_error, standardised, smoothed_deviation]) =
+        (sums(&filtered), sums(&smoothed));
+    assert!(smoothed_error < 0.8 * error && smoothed_deviation < deviation, "{smoothed_error} {error}");
+    assert!(standardised < 1.5, "{standardised}");
+}
+
+#[test]
+fn frames_before_a_sudden_change_are_not_smoothed_by_those_after_it() {
+    let turned = |frame: u64| if frame < 40 { 0.05 * frame as f64 } else { 2.0 - 0.1 * (frame - 40) as f64 };
+    let (tracker, filtered) = followed_for_smoothing((0..80).map(|frame| egg(frame, turned(frame), 0.0)));
+    let mut smoothed = filtered.clone();
+    assert_eq!(smoothed.smooth(&tracker), []);
+    for (frame, known) in smoothed.poses(None).into_iter().enumerate().take(40).skip(10) {
+        let omega = known.and_then(|known| known.motion.parameters().next()).expect("a motion");
+        let (value, deviation) = omega.value.zip(omega.standard_deviation).expect("known");
+        assert!((value + 0.5).abs() < 4.0 * deviation + 1e-3, "frame {frame}: {omega:?}");
     }
 }

@@ -65,9 +65,18 @@ pub(crate) fn track_table<'py>(
     smooth: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let mut recording = Recording::new(&tracker.lock());
+    let mut recording = begun(tracker, smooth);
     follow(py, tracker, table.outlines()?, progress.as_ref(), |observation| recording.take(observation))?;
     recording.columns(py, tracker, smooth)
+}
+
+/// A recording of what a tracker follows from now on, which may be smoothed.
+fn begun(tracker: &PyTracker, smooth: bool) -> Recording {
+    let mut tracker = tracker.lock();
+    if smooth {
+        tracker.record_expected_states();
+    }
+    Recording::new(&tracker)
 }
 
 /// What became of the frames that a tracker was given one by one, as columns.
@@ -80,8 +89,9 @@ pub(crate) struct PyRecorder {
 #[pymethods]
 impl PyRecorder {
     #[new]
-    fn new(tracker: &PyTracker) -> Self {
-        Self { recording: Mutex::new(Recording::new(&tracker.lock())) }
+    #[pyo3(signature = (tracker, smooth = false))]
+    fn new(tracker: &PyTracker, smooth: bool) -> Self {
+        Self { recording: Mutex::new(begun(tracker, smooth)) }
     }
 
     /// Adds the observation of a frame.

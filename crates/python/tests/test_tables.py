@@ -92,7 +92,7 @@ def test_smoothed_poses_are_known_better_than_filtered_ones(table):
     assert np.isfinite(smoothed["angle"][:2]).all()
 
 
-def test_poses_of_an_object_whose_motion_changed_are_not_smoothed_and_a_warning_names_it(bird):
+def test_a_motion_that_changes_is_smoothed_as_well_as_a_constant_one(bird):
     outlines = []
     for frame in bird:
         outlines.append(("constant", frame.index, frame.time, frame.outline))
@@ -100,12 +100,11 @@ def test_poses_of_an_object_whose_motion_changed_are_not_smoothed_and_a_warning_
         rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
         outlines.append(("swinging", frame.index, frame.time, ff.Outline(frame.outline.points @ rotation.T)))
     table = ff.outline_table(outlines)
-    with pytest.warns(UserWarning, match="poses of object swinging are not smoothed: the motion changed"):
-        smoothed = ff.track(table, smooth=True)
+    smoothed = ff.track(table, smooth=True)
     filtered = ff.track(table)
-    swinging = smoothed["object"] == "swinging"
-    np.testing.assert_array_equal(smoothed["angle"][swinging], filtered["angle"][swinging])
-    assert not np.array_equal(smoothed["angle"][~swinging], filtered["angle"][~swinging])
+    for name in ["constant", "swinging"]:
+        rows = smoothed["object"] == name
+        assert not np.array_equal(smoothed["omega"][rows], filtered["omega"][rows])
 
 
 def test_the_adaptive_method_has_a_motion_and_no_pose(table):

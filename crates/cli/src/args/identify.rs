@@ -87,10 +87,10 @@ pub(crate) struct IdentifyArgs {
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) trajectory: Option<PathBuf>,
 
-    /// Estimate every row of the trajectory from all frames, also later ones; for constant motion only
+    /// Estimate every row of the trajectory from all frames, also later ones
     ///
-    /// If the motion of an object was seen to change, its rows stay as they are without this option, and a warning says so. That is also so if
-    /// an object flies straight while it spins, as its b changes.
+    /// A motion that was not seen to change is taken for constant: all rows have the same, also the first. Where it was, what was expected of each
+    /// frame says how much the frames after it tell of those before; of a sudden change they tell nothing of what was before.
     #[arg(long, requires = "trajectory")]
     pub(crate) smooth: bool,
 

@@ -87,7 +87,10 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
 
 /// A tracker with all options, for outlines that may lie off as pictures say.
 fn tracker(args: &IdentifyArgs, by_pictures: Option<OutlineUncertainty>) -> Result<Tracker, Failure> {
-    let tracker = Tracker::new(args.tracker_settings(by_pictures)?).map_err(Failure::unusable)?;
+    let mut tracker = Tracker::new(args.tracker_settings(by_pictures)?).map_err(Failure::unusable)?;
+    if args.smooth {
+        tracker.record_expected_states();
+    }
     // A report plays few objects, drawings show all of them.
     let objects = match (&args.drawings.overlay, &args.report) {
         (Some(_), _) => usize::MAX,

@@ -1,8 +1,10 @@
 //! What is expected of the object at the time of a frame that has not been looked at.
 use freeform_estimate::ExpectedState;
+use nalgebra::DMatrix;
 
 use super::{
     motion_filter::{MotionFilter, Phase},
+    stated::Statement,
     tracking::predict,
 };
 
@@ -25,7 +27,19 @@ impl MotionFilter {
         }
         ahead.history.end_step();
         ahead.clock.of_track = time;
+        let systematic = ahead.systematic_part()?;
         let turning_velocity = ahead.dynamics().map_or(1.0, |weights| weights.generator);
-        Some(ExpectedState { state: ahead.state()?, turning_velocity })
+        Some(ExpectedState { state: ahead.state()?, turning_velocity, systematic })
+    }
+
+    /// The part of the covariance of the [state](Self::state) that frames do not average out.
+    fn systematic_part(&self) -> Option<DMatrix<f64>> {
+        let (track, Statement { random, all, .. }) = (self.track.as_ref()?, self.statement()?);
+        let k = self.settings.model.parameter_count();
+        let mut systematic = DMatrix::from_fn(2 * k, 2 * k, |i, j| all.covariance[(i, j)] - random.covariance[(i, j)]);
+        let per_second = track.reference().per_second();
+        systematic.rows_mut(k, k).scale_mut(per_second);
+        systematic.columns_mut(k, k).scale_mut(per_second);
+        Some(systematic)
     }
 }

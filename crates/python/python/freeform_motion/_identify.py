@@ -174,8 +174,8 @@ def track(
     data, fps, times, columns, motion, method, scale, progress, **options
         As of `identify`.
     smooth : bool
-        Whether later frames take part in the poses of earlier ones, for a constant motion; `adaptive=False` says that it is one.
-        The poses of an object whose motion was seen to change stay as they are, and a `UserWarning` says so.
+        Whether later frames take part in the poses and motions of earlier ones. A motion that is not seen to change is taken for constant;
+        `adaptive=False` says that it is one. What changes suddenly stays as it was known before.
 
     Returns
     -------
@@ -204,7 +204,7 @@ def track(
         with progress_bar(progress, None) as advance:
             found = track_table(tracker, table, smooth, advance)
     else:
-        recorder = Recorder(tracker)
+        recorder = Recorder(tracker, smooth)
         for observation in _follow(tracker, data, fps, times, tracer, progress):
             recorder.take(observation)
         found = recorder.columns(tracker, smooth)
