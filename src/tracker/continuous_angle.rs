@@ -24,6 +24,8 @@ const EITHER_WAY: f64 = TAU / (1.0 + Ambiguity::SURELY_SMALLER);
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ContinuousAngle {
     last: Option<LastPose>,
+    /// Time of the last pose that was left out since then, s.
+    left_out: Option<f64>,
     /// The shortest step between poses, s.
     step: Option<f64>,
     /// The last angular velocity that was known.
@@ -105,8 +107,20 @@ impl ContinuousAngle {
         if omega.is_some() {
             (next.deviation, next.open, next.omega) = (deviation, 0.0, omega);
         }
-        next.last = Some(LastPose { time, angle: *value });
+        (next.last, next.left_out) = (Some(LastPose { time, angle: *value }), None);
         *self = next;
+    }
+
+    /// Leaves out a pose at a time in seconds whose turn is one of several: until one is told, nobody knows how the object turns, and its angular velocity
+    /// says afterwards what it has made of the time.
+    pub fn leave_out(&mut self, time: f64) {
+        if let Some(before) = self.left_out.or(self.last.map(|last| last.time)) {
+            let seconds = time - before;
+            self.step = Some(self.step.map_or(seconds, |step| step.min(seconds)));
+        }
+        // The angle is 0 in the first frame, a step before the first pose.
+        self.last.get_or_insert(LastPose { time, angle: 0.0 });
+        self.left_out = Some(time);
     }
 
     /// The angle that is expected at a time, none before the first, by the angular velocities before and then; counts the time that poses were missing.
@@ -115,7 +129,7 @@ impl ContinuousAngle {
         let seconds = time - last.time;
         let step = self.step.map_or(seconds, |step| step.min(seconds));
         self.step = Some(step);
-        if seconds > LONGEST_STEP * step {
+        if seconds > LONGEST_STEP * step || self.left_out.is_some() {
             self.open += seconds;
         }
         let known = [self.omega, omega].into_iter().flatten();
@@ -218,6 +232,24 @@ mod tests {
         assert!(next(&mut angles, &state(0.01, 40.0, 0.1), f64::NAN).0.is_nan());
         let later = next(&mut angles, &state(0.02, 40.0, 0.1), 3.8 - TAU);
         assert!(first == (3.0, 0.0) && (later.0 - 3.8).abs() < 1e-9, "{first:?} {later:?}");
+    }
+
+    #[test]
+    fn turns_made_while_several_were_possible_are_those_of_the_motion_told_afterwards_and_may_be_others() {
+        let mut angles = ContinuousAngle::default();
+        for frame in 1..17 {
+            angles.leave_out(0.002 * f64::from(frame));
+        }
+        let turned = 287.0 * 0.034;
+        let (angle, deviation) = next(&mut angles, &state(0.034, 287.0, 0.5), turned - TAU * (turned / TAU).round());
+        assert!((angle - turned).abs() < 1e-9 && deviation > PI, "{angle} {deviation}");
+        // Where the turn was known before, it tells as well.
+        let mut angles = ContinuousAngle::default();
+        let known = |frame: u32| f64::from(frame) * 0.1;
+        next(&mut angles, &state(0.0, 5.0, 0.01), 0.0);
+        (1..30).for_each(|frame| angles.leave_out(known(frame)));
+        let (angle, deviation) = next(&mut angles, &state(3.0, 5.0, 0.01), 15.0 - 2.0 * TAU);
+        assert!((angle - 15.0).abs() < 1e-9 && deviation == 0.0, "{angle} {deviation}");
     }
 
     #[test]

@@ -78,7 +78,10 @@ impl Poses {
             if *current != segment {
                 (*current, *angle) = (segment, ContinuousAngle::default());
             }
-            angle.go_on(state, source, &mut pose);
+            match turn {
+                TurnAmbiguity::Unambiguous => angle.go_on(state, source, &mut pose),
+                TurnAmbiguity::Ambiguous => angle.leave_out(state.time()),
+            }
         }
         if turn == TurnAmbiguity::Ambiguous {
             pose.iter_mut().filter(|parameter| parameter.name == "angle").for_each(|angle| {

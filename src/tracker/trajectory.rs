@@ -290,8 +290,7 @@ fn tell_all_of_constant_motion(
     let last = run.iter().rev().find(|row| row.state().is_some());
     let turn_ambiguity = last.map_or(TurnAmbiguity::Unambiguous, |row| row.turn_ambiguity);
     let segment = run[0].segment;
-    let is_of_beginning =
-        |row: &&mut &mut TrajectoryRow| row.accepted && row.segment == segment && row.state.is_none();
+    let is_of_beginning = |row: &&mut &mut TrajectoryRow| row.accepted && row.segment == segment && row.state.is_none();
     for row in before.iter_mut().rev().take_while(is_of_beginning) {
         row.state = row.time.map(|time| first.predicted(time, noise));
         (row.velocity_not_stated, row.turn_ambiguity) = (velocity_not_stated, turn_ambiguity);

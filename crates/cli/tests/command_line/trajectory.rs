@@ -113,7 +113,8 @@ fn poses_of_an_object_whose_motion_changes_are_smoothed_as_well_as_those_of_othe
     let csv = format!("frame,time,x,y,object\n{mixed}");
     let (filtered, smoothed) = (trajectory("--quiet", &csv), trajectory("--quiet --smooth", &csv));
     for name in ["a", "b"] {
-        let rows = |table: &[Vec<String>]| table.iter().filter(|row| row[0] == name).take(50).cloned().collect::<Vec<_>>();
+        let rows =
+            |table: &[Vec<String>]| table.iter().filter(|row| row[0] == name).take(50).cloned().collect::<Vec<_>>();
         assert_ne!(rows(&filtered), rows(&smoothed), "{name}");
     }
     let folder = tempfile::tempdir().expect("a folder");

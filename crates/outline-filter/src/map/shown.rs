@@ -3,10 +3,10 @@ use freeform_riccati::{is_affine, map_point};
 use nalgebra::{Matrix2, Matrix3, Point2};
 
 use super::OutlineMap;
-use crate::tuning::update::{FLATTEST, LEAST_DEPTH};
+use crate::tuning::update::{FARTHEST, FLATTEST, LEAST_DEPTH};
 
 impl OutlineMap {
-    /// Whether a pose shows the outline: it is seen from its front and nowhere from its edge, and all of it lies on one side of the line that goes to
+    /// Whether a pose shows the outline: it is near enough to be told from a point, is seen from its front and nowhere from its edge, and all of it lies on one side of the line that goes to
     /// infinity, none of it close by. No other pose can be worked with: points of the outline lie beyond any number, and errors of the pose move
     /// them by as much.
     ///
@@ -16,6 +16,9 @@ impl OutlineMap {
             return false;
         }
         if is_affine(pose) {
+            if pose[(0, 2)].abs().max(pose[(1, 2)].abs()) > FARTHEST {
+                return false;
+            }
             let linear = pose.fixed_view::<2, 2>(0, 0).into_owned();
             return linear.determinant() > 0.0 && is_regular(&linear);
         }
@@ -74,6 +77,8 @@ mod tests {
         {
             assert!(!is_shown(&pose), "{pose}");
         }
+        let moved = |x: f64| Matrix3::new_translation(&nalgebra::Vector2::new(x, 0.0));
+        assert!(is_shown(&moved(-1e8)) && !is_shown(&moved(1e10)) && !is_shown(&moved(-1e119)));
         // Mirrored, and turned about an axis in the plane by more than a right angle.
         let behind = Matrix3::new(-0.9, 0.0, 0.4, 0.0, 1.0, 0.0, -0.4, 0.0, -0.9);
         for pose in [wide(-1.0), wide(-1.0) * perspective(0.3), behind] {
