@@ -17,8 +17,8 @@ const EITHER_WAY: f64 = TAU / (1.0 + Ambiguity::SURELY_SMALLER);
 /// are counted that its angular velocity has made, the mean of those known last before and first afterwards; the fewest where none is known.
 ///
 /// Where an object was not seen for long, and its angular velocity is not known well enough, is not known yet, or was another one before than it is
-/// afterwards, whole turns may have been missed. So they may where it was seen to have turned by more than a third of a circle beyond what was expected,
-/// and might have turned the other way round. The standard deviation of all angles from then on has what that may be.
+/// afterwards, whole turns may have been missed. So they may where it was seen to have turned by more than a third of a circle beyond what was
+/// expected, and might have turned the other way round. The standard deviation of all angles from then on has what that may be.
 ///
 /// Predicted poses are in line with those before them, and nothing goes on from them.
 #[derive(Debug, Clone, Copy, Default)]
@@ -81,8 +81,8 @@ impl Omega {
 }
 
 impl ContinuousAngle {
-    /// Makes the angle of the next pose go on from those before it. It is given as that of a state, between -pi and pi rad, and its standard deviation
-    /// gets what whole turns may have been missed. Where there is none, or it is not known, nothing changes.
+    /// Makes the angle of the next pose go on from those before it. It is given as that of a state, between -pi and pi rad, and its standard
+    /// deviation gets what whole turns may have been missed. Where there is none, or it is not known, nothing changes.
     pub fn go_on(&mut self, state: &MotionState, source: PoseSource, pose: &mut [PoseParameter]) {
         let angle = pose.iter_mut().find(|parameter| parameter.name == "angle");
         let Some(PoseParameter { value, standard_deviation, .. }) = angle.filter(|angle| angle.value.is_finite())
@@ -111,8 +111,8 @@ impl ContinuousAngle {
         *self = next;
     }
 
-    /// Leaves out a pose at a time in seconds whose turn is one of several: until one is told, nobody knows how the object turns, and its angular velocity
-    /// says afterwards what it has made of the time.
+    /// Leaves out a pose at a time in seconds whose turn is one of several: until one is told, nobody knows how the object turns, and its angular
+    /// velocity says afterwards what it has made of the time.
     pub fn leave_out(&mut self, time: f64) {
         if let Some(before) = self.left_out.or(self.last.map(|last| last.time)) {
             let seconds = time - before;
@@ -123,7 +123,8 @@ impl ContinuousAngle {
         self.left_out = Some(time);
     }
 
-    /// The angle that is expected at a time, none before the first, by the angular velocities before and then; counts the time that poses were missing.
+    /// The angle that is expected at a time, none before the first, by the angular velocities before and then; counts the time that poses were
+    /// missing.
     fn expect(&mut self, time: f64, omega: Option<Omega>) -> f64 {
         let Some(last) = self.last else { return 0.0 };
         let seconds = time - last.time;

@@ -152,10 +152,11 @@ impl Tracker {
         Self { known_outlines_of: objects, ..self }
     }
 
-    /// From now on the observations of new objects hold what was expected before each frame ([`Observation::expected`]), which
+    /// From now on observations hold what was expected before each frame ([`Observation::expected`]), which
     /// [`Trajectory::smooth`] needs where the motion of an object changes (motion filter). A frame takes about twice as long.
     pub fn record_expected_states(&mut self) {
         self.expected_states = ExpectedStates::Given;
+        self.objects.list.iter_mut().for_each(TrackedObject::record_expected_states);
     }
 
     /// Its settings.
@@ -171,9 +172,9 @@ impl Tracker {
     }
 
     /// Does a part of the work that waits for the next outlines, in every object, while nothing else is to be done; whether more is waiting. All
-    /// results are the same to the last bit whether, when and how often this is called: what is not done by then, the next [`push`](Self::push) of the
-    /// object does. A control loop that calls this between frames, as long as it has time and it returns true, has no long step to wait for where the
-    /// map of an outline is cut anew: see [`MotionFilter::prepare`](freeform_outline_filter::MotionFilter::prepare).
+    /// results are the same to the last bit whether, when and how often this is called: what is not done by then, the next [`push`](Self::push) of
+    /// the object does. A control loop that calls this between frames, as long as it has time and it returns true, has no long step to wait for where
+    /// the map of an outline is cut anew: see [`MotionFilter::prepare`](freeform_outline_filter::MotionFilter::prepare).
     pub fn prepare(&mut self) -> bool {
         let mut is_more_waiting = false;
         for object in &mut self.objects.list {

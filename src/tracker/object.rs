@@ -71,6 +71,11 @@ impl TrackedObject {
         }
     }
 
+    /// Lets its observations hold what was expected of it.
+    pub(super) fn record_expected_states(&mut self) {
+        self.expected_states = ExpectedStates::Given;
+    }
+
     /// Its name.
     pub(super) fn name(&self) -> &str {
         &self.name

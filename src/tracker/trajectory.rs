@@ -100,6 +100,9 @@ pub enum SmoothingError {
     /// The motion of the object changed, and no observation holds what was expected of it.
     #[error("the motion changed, and the tracker has not recorded what was expected in each frame")]
     MotionChanged,
+    /// What is expected of a plane in space is not told.
+    #[error("what is expected of a plane in space is not told")]
+    PlaneInSpace,
     /// The states do not form one sequence.
     #[error(transparent)]
     States(#[from] SmootherError),
@@ -114,7 +117,8 @@ impl TrajectoryRow {
         (state.time() == time).then_some(state)
     }
 
-    /// Why a value of the row is not stated, of those that are not: of the motion by the name of the parameter, `v1` or `v2`, of the pose by any other.
+    /// Why a value of the row is not stated, of those that are not: of the motion by the name of the parameter, `v1` or `v2`, of the pose by any
+    /// other.
     #[must_use]
     pub fn why_unstated(&self, name: &str) -> NotStated {
         if self.state().is_none() {
@@ -202,12 +206,13 @@ impl Trajectory {
         rows.collect()
     }
 
-    /// Lets later frames take part, object by object, within each run of frames through which an object was followed. The frames that such a run
-    /// began with, when the motion was not known yet, get their poses from the ones after them. `tracker` is the one that followed the objects.
+    /// Lets later frames take part, object by object, within each run of frames of a segment through which an object was followed. `tracker` is the
+    /// one that followed the objects.
     ///
-    /// A motion that was not seen to change is taken for constant. One that was is smoothed by what was expected of each frame from those before it
-    /// ([`smooth_changing`]), if the tracker [recorded](Tracker::record_expected_states) that; of a sudden change nothing is handed back to the frames
-    /// before.
+    /// A motion that was not seen to change is taken for constant: the frames that a run began with, when the motion was not known yet, get their
+    /// poses from the ones after them. One that was is smoothed by what was expected of each frame from those before it
+    /// ([`smooth_changing`]), if the tracker [recorded](Tracker::record_expected_states) that; the first frames of a run stay as they are, and to
+    /// those before a sudden change nothing is handed back.
     ///
     /// Returns the objects that are not smoothed, in the order of their first rows. Their rows stay as filtered.
     #[must_use = "some objects may not be smoothed"]
@@ -216,6 +221,7 @@ impl Trajectory {
             MethodSettings::Filter(settings) | MethodSettings::Plane(_, settings) => settings.process_noise,
             MethodSettings::Adaptive(_) => ProcessNoise::default(),
         };
+        let is_plane = matches!(tracker.settings().method, MethodSettings::Plane(..));
         let mut positions: HashMap<String, usize> = HashMap::new();
         let mut objects: Vec<Vec<&mut TrajectoryRow>> = Vec::new();
         for row in &mut self.rows {
@@ -229,6 +235,7 @@ impl Trajectory {
             let object = rows.first()?.object.clone();
             let smoother = match tracker.motion_of_object_changed(&object) {
                 false => Smoother::ConstantMotion(noise),
+                true if is_plane => return Some(NotSmoothed { object, reason: SmoothingError::PlaneInSpace }),
                 true if rows.iter().any(|row| row.expected.is_some()) => Smoother::ByExpectation,
                 true => return Some(NotSmoothed { object, reason: SmoothingError::MotionChanged }),
             };
@@ -249,10 +256,11 @@ enum Smoother {
 
 /// Smooths the rows of an object, or none of them.
 fn smooth_object(rows: &mut [&mut TrajectoryRow], smoother: Smoother) -> Result<(), SmoothingError> {
-    let followed: Vec<bool> = rows.iter().map(|row| row.state.is_some()).collect();
+    // Poses of different segments have different references.
+    let followed: Vec<(bool, usize)> = rows.iter().map(|row| (row.state.is_some(), row.segment)).collect();
     let (mut start, mut smoothed) = (0, Vec::new());
     for run in followed.chunk_by(|a, b| a == b) {
-        if run[0] {
+        if run[0].0 {
             let known = || rows[start..start + run.len()].iter().filter(|row| row.state().is_some());
             let filtered: Vec<MotionState> = known().filter_map(|row| row.state().cloned()).collect();
             let states = match &smoother {

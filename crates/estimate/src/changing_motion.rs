@@ -1,42 +1,66 @@
 //! Smoothing of a motion that changes from frame to frame.
-use freeform_riccati::{MotionModel, ParameterVector, logarithm};
-use nalgebra::{DMatrix, DVector, Matrix3, Point2};
+use freeform_riccati::{MotionModel, logarithm};
+use nalgebra::{DMatrix, DVector, Matrix3};
 
 use crate::{
+    expected_derivative::derivative,
     information::scaled_inverse,
     motion_state::MotionState,
-    process_noise::ProcessNoise,
     smoother::{SmootherError, check},
 };
 
 /// What was expected of an object before a frame was looked at, from the frames before it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExpectedState {
-    /// Pose and motion, with the covariance of the prediction.
+    /// Pose and motion at the time of the frame, with the covariance of the prediction.
     pub state: MotionState,
     /// How far the velocity of the centroid goes with the turn of the object, from 0, where it stays the same, to 1, where it turns with it: the
     /// probability of a constant generator.
     pub turning_velocity: f64,
-    /// The part of its covariance that frames do not average out, such as edges that lie off: of pose and motion, 2 k by 2 k.
-    pub systematic: DMatrix<f64>,
 }
 
-/// Beyond this squared distance from where it was expected, for each parameter of the pose, a state is of another motion: what later frames tell of that
-/// says nothing of the one before. By chance a frame in ten thousand of a rigid motion is (chi square, 21 with three degrees of freedom).
-const ANOTHER_MOTION: f64 = 7.0;
-
-/// No variance grows by more than this factor: where a change has been found, less is known than before, and nothing of that is handed back.
-const NO_WORSE: f64 = 1.2;
-
-/// Displacement, normalised, and rates by which derivatives are taken as differences: errors of a second order are a millionth of it, those of rounding less.
-const DIFFERENCE: f64 = 1e-5;
+/// Squared distances that one in ten thousand of what is expected is beyond: chi square with 3, 4, 6 and 8 degrees of freedom.
+const ANOTHER_MOTION: [(usize, f64); 4] = [(3, 21.1), (4, 23.5), (6, 27.9), (8, 31.8)];
 
 /// What every state is known to be once all frames have been seen, of a motion that may change in between: fixed-interval smoothing (Rauch, Tung,
-/// Striebel 1965) by what was expected of each state from the one before. `expected[t]` belongs to `states[t]`; where it is `None`, and where a state is
-/// of another motion than was expected, nothing is handed back to the states before.
+/// Striebel 1965) by what was expected of each state from the one before, by whatever dynamics. What several hypotheses of these expect together
+/// counts as one normal distribution, as in the merging of the generalised pseudo-Bayesian estimators (Bar-Shalom, Li, Kirubarajan 2001, 11.6).
 ///
-/// With F the derivative of the expected state by the one before, p the covariance of that where the outline is given and p' that of what was expected,
-/// the gain is `p F' p'^-1`. What hypotheses of several dynamics expect together counts as one normal distribution.
+/// `expected[t]` belongs to `states[t]`. Where it is `None` or missing, where a state is of another motion than was expected, or known less well, and
+/// where numbers do not allow it, nothing is handed back to the states before: they are smoothed by those between alone.
+///
+/// With F the derivative of the expected state by the one before, p the covariance of that where the outline is given and p' that of what was
+/// expected, the gain is `K = p F' (F p F' + a)^-1`, where a is what `p' - F p F'` has of positive eigenvalues, and the covariance where the outline
+/// is given `(I - K F) p (I - K F)' + K (a + q) K'`, with q that of the smoothed state after. Deviations become smaller by no more than that: what
+/// frames have in common, the outline, edges that lie off, does not average out.
+///
+/// ```
+/// use freeform_estimate::{ExpectedState, NormalisedState, ProcessNoise, smooth_changing};
+/// use freeform_riccati::MotionModel;
+/// use nalgebra::{DMatrix, Matrix3, Point2};
+///
+/// let state = |time: f64, omega: f64, variance: f64| NormalisedState {
+///     model: MotionModel::Rigid,
+///     time,
+///     origin: Point2::origin(),
+///     radius: 1.0,
+///     pose: MotionModel::Rigid.flow(&[omega * time, 0.0, 0.0], 1.0).into_inner(),
+///     motion: [omega, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+///     covariance: variance * DMatrix::identity(6, 6),
+///     body_frame: DMatrix::zeros(3, 3),
+///     covariance_given_outline: variance * DMatrix::identity(6, 6),
+///     observable: [true; 8],
+///     hidden: [false; 8],
+///     centroid: Point2::origin(),
+/// };
+/// // The second frame tells more than the first; the motion may have changed in between by 0.1 rad/s.
+/// let states = [state(0.1, 1.45, 1e-2).into(), state(0.2, 1.5, 1e-4).into()];
+/// let expected = ExpectedState { state: state(0.2, 1.45, 2e-2).into(), turning_velocity: 1.0 };
+/// let smoothed = smooth_changing(&states, &[None, Some(expected)])?;
+/// let omega = smoothed[0].motion().values()[0];
+/// assert!(omega > 1.46 && omega < 1.49);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// As [`smooth`](crate::smooth).
@@ -45,35 +69,26 @@ pub fn smooth_changing(
     expected: &[Option<ExpectedState>],
 ) -> Result<Vec<MotionState>, SmootherError> {
     check(states)?;
-    let expected_of = |t: usize| expected.get(t).and_then(Option::as_ref);
     let mut smoothed = states.to_vec();
-    // What is random in the state after.
-    let mut random_after = None;
-    for t in (0..states.len()).rev() {
-        // Of the first state of a run it is told by the one after.
-        let systematic = expected_of(t).or(expected_of(t + 1)).map(|expected| &expected.systematic);
-        let random =
-            systematic.map_or_else(|| Some(states[t].covariance.clone()), |part| without(&states[t].covariance, part));
-        let next = smoothed.get(t + 1).zip(expected_of(t + 1)).zip(random_after.take());
-        let found = next.zip(random.as_ref()).and_then(|(((next, expected), random_after), random)| {
-            let is_expected = is_as_expected(&states[t + 1], &expected.state);
-            is_expected.then(|| taken_back((&states[t], random), (next, &random_after), expected)).flatten()
-        });
-        random_after = match found {
-            Some((better, random)) => {
-                smoothed[t] = better;
-                Some(random)
-            }
-            None => random,
-        };
+    for t in (1..states.len()).rev() {
+        let (before, after) = smoothed.split_at_mut(t);
+        let expected = expected.get(t).and_then(Option::as_ref);
+        if let (Some(state), Some(next), Some(expected)) = (before.last_mut(), after.first(), expected)
+            && is_as_expected(&states[t], &expected.state)
+            && let Some(better) = taken_back(state, next, expected)
+        {
+            *state = better;
+        }
     }
     Ok(smoothed)
 }
 
-/// Whether a state is of the motion that was expected, by its pose: by how much a frame has moved that, in deviations of what a frame moves it by.
+/// Whether a state is of the motion that was expected, and known as well at least: by how much a frame has moved the pose, in deviations of what a
+/// frame moves it by.
 fn is_as_expected(found: &MotionState, expected: &MotionState) -> bool {
     let Some(difference) = difference(found, expected) else { return false };
     let k = found.model.parameter_count();
+    let Some((_, limit)) = ANOTHER_MOTION.into_iter().find(|(parameters, _)| *parameters == k) else { return false };
     let of_pose = difference.rows(0, k);
     let squared = |covariance: &DMatrix<f64>| {
         let information = scaled_inverse(&covariance.view((0, 0), (k, k)).into_owned())?;
@@ -82,8 +97,15 @@ fn is_as_expected(found: &MotionState, expected: &MotionState) -> bool {
     // Where rounding leaves their difference indefinite, the sum of both covariances is the most that a frame moves a pose by.
     let told = squared(&(&expected.within - &found.within)).filter(|squared| *squared >= 0.0);
     let distance = told.or_else(|| squared(&(&expected.within + &found.within)));
-    distance.is_some_and(|squared| squared <= ANOTHER_MOTION * k as f64)
+    let is_known = (0..2 * k).all(|i| found.within[(i, i)] <= ROUNDED * expected.within[(i, i)]);
+    is_known && distance.is_some_and(|squared| squared <= limit)
 }
+
+/// A variance that is larger by less than this is so by rounding.
+const ROUNDED: f64 = 1.0 + 1e-9;
+
+/// No number of a state is corrected by more than this many deviations: what says so is of another motion. One in ten thousand is by chance.
+const LARGEST_CORRECTION: f64 = 3.9;
 
 /// By how much a state lies off another: the pose on the group, on the left, then the motion.
 fn difference(state: &MotionState, from: &MotionState) -> Option<DVector<f64>> {
@@ -93,63 +115,50 @@ fn difference(state: &MotionState, from: &MotionState) -> Option<DVector<f64>> {
     Some(DVector::from_fn(2 * k, |i, _| if i < k { pose[i] } else { state.motion[i - k] - from.motion[i - k] }))
 }
 
-/// A filtered state corrected by the smoothed one after it; `None` where numbers do not allow it, or less would be known then.
-fn taken_back(
-    (state, random): (&MotionState, &DMatrix<f64>),
-    (next, random_after): (&MotionState, &DMatrix<f64>),
-    expected: &ExpectedState,
-) -> Option<(MotionState, DMatrix<f64>)> {
+/// A filtered state corrected by the smoothed one after it; `None` where numbers do not allow it.
+fn taken_back(state: &MotionState, next: &MotionState, expected: &ExpectedState) -> Option<MotionState> {
     let k = state.model.parameter_count();
     let derivative = derivative(state, expected)?;
-    let gain = &state.within * derivative.transpose() * scaled_inverse(&expected.state.within)?;
+    let by = |map: &DMatrix<f64>, covariance: &DMatrix<f64>| map * covariance * map.transpose();
+    let moved = by(&derivative, &state.within);
+    // Hypotheses of dynamics may have expected the state better than what is known of the one before tells: nothing has been added then.
+    let added = without_negative(&expected.state.within, &(&expected.state.within - &moved))?;
+    let gain = &state.within * derivative.transpose() * scaled_inverse(&(moved + &added))?;
     let correction = &gain * difference(next, &expected.state)?;
-    let step = Step { kept: DMatrix::identity(2 * k, 2 * k) - &gain * &derivative, gain, derivative };
-    let expected_random = &expected.state.covariance - &expected.systematic;
-    let smoothed = step.covariance(random, &expected_random, random_after)?;
-    let within = step.covariance(&state.within, &expected.state.within, &next.within)?;
-    let is_better = (0..2 * k).all(|i| smoothed[(i, i)] <= NO_WORSE * random[(i, i)]);
-    if !is_better || !correction.iter().all(|entry| entry.is_finite()) {
+    let kept = DMatrix::identity(2 * k, 2 * k) - &gain * &derivative;
+    let within = by(&kept, &state.within) + by(&gain, &(added + &next.within));
+    let is_likely = |i: usize| correction[i].abs() <= LARGEST_CORRECTION * state.within[(i, i)].max(0.0).sqrt();
+    if !(0..2 * k).all(is_likely) || !within.iter().all(|entry| entry.is_finite()) {
         return None;
     }
     let mut better = state.clone();
     better.pose = state.model.flow(&correction.as_slice()[..k], 1.0).into_inner() * state.pose;
     (0..k).for_each(|j| better.motion[j] += correction[k + j]);
-    better.covariance += &smoothed - random;
-    better.within = within;
+    let shares: Vec<f64> = (0..2 * k).map(|i| share_left(state, &within, i).sqrt()).collect();
+    better.covariance = DMatrix::from_fn(2 * k, 2 * k, |i, j| shares[i] * shares[j] * state.covariance[(i, j)]);
+    better.within = 0.5 * (&within + within.transpose());
     // Later frames do not tell where the body frame lies beside the outline, but that what was known of it later holds for all poses.
     let back = adjoint(state.model, &(better.pose * next.pose.try_inverse()?))?;
     better.body_frame = &back * &next.body_frame * back.transpose();
-    Some((better, smoothed))
+    Some(better)
 }
 
-/// How a state is made of what was known of it and of the state after it.
-struct Step {
-    /// I - K F, by which what was known counts.
-    kept: DMatrix<f64>,
-    /// K.
-    gain: DMatrix<f64>,
-    /// F.
-    derivative: DMatrix<f64>,
-}
-
-impl Step {
-    /// The random part of the covariance of a smoothed state: from that of the filtered one, of what was expected of the one after it, and of that
-    /// smoothed. Positive by its form, whatever rounding does. `None` where a number is not finite.
-    fn covariance(&self, before: &DMatrix<f64>, expected: &DMatrix<f64>, next: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-        let by = |map: &DMatrix<f64>, covariance: &DMatrix<f64>| map * covariance * map.transpose();
-        let added = without(expected, &by(&self.derivative, before))?;
-        let sum = by(&self.kept, before) + by(&self.gain, &(next + added));
-        sum.iter().all(|entry| entry.is_finite()).then(|| 0.5 * (&sum + sum.transpose()))
+/// The share of a variance of a state that is left where that given the outline becomes another: less by as much, but no less than that, as
+/// hypotheses of dynamics may know a state better than it is known without them.
+fn share_left(state: &MotionState, within: &DMatrix<f64>, i: usize) -> f64 {
+    let (all, before, after) = (state.covariance[(i, i)], state.within[(i, i)], within[(i, i)]);
+    if all <= 0.0 {
+        return 1.0;
     }
+    ((all - before + after).max(after) / all).clamp(0.0, 1.0)
 }
 
-/// What is left of a covariance when another is subtracted, without negative eigenvalues; these are found in deviations of the former, so that units do
-/// not matter. `None` where a number is not finite.
-fn without(covariance: &DMatrix<f64>, part: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+/// A symmetric matrix without its negative eigenvalues, which are found in the deviations of a covariance, so that units do not matter. `None` where
+/// a number is not finite.
+fn without_negative(covariance: &DMatrix<f64>, matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let size = covariance.nrows();
     let scale: Vec<f64> = covariance.diagonal().iter().map(|variance| variance.max(f64::MIN_POSITIVE).sqrt()).collect();
-    let rest = covariance - part;
-    let scaled = DMatrix::from_fn(size, size, |i, j| 0.5 * (rest[(i, j)] + rest[(j, i)]) / (scale[i] * scale[j]));
+    let scaled = DMatrix::from_fn(size, size, |i, j| 0.5 * (matrix[(i, j)] + matrix[(j, i)]) / (scale[i] * scale[j]));
     let mut eigen = scaled.iter().all(|entry| entry.is_finite()).then(|| scaled.symmetric_eigen())?;
     eigen.eigenvalues.apply(|value| *value = value.max(0.0));
     let positive = eigen.recompose();
@@ -163,70 +172,15 @@ fn adjoint(model: MotionModel, map: &Matrix3<f64>) -> Option<DMatrix<f64>> {
     Some(DMatrix::from_fn(k, k, |i, j| adjoint[i][j]))
 }
 
-/// The derivative of what is expected of a state at a later time by the state.
-fn derivative(state: &MotionState, expected: &ExpectedState) -> Option<DMatrix<f64>> {
-    let seconds = expected.state.time - state.time;
-    let generator = state.transition(seconds, &ProcessNoise::default()).matrix;
-    let turning = expected.turning_velocity.clamp(0.0, 1.0);
-    if turning == 1.0 || state.model == MotionModel::Projective {
-        return Some(generator);
-    }
-    Some(turning * generator + (1.0 - turning) * derivative_of_straight(state, seconds)?)
-}
-
-/// The derivative of a state whose rates and whose velocity of the centroid stay the same.
-fn derivative_of_straight(state: &MotionState, seconds: f64) -> Option<DMatrix<f64>> {
-    let (model, k) = (state.model, state.model.parameter_count());
-    let after =
-        |pose: &Matrix3<f64>, motion: &ParameterVector| straight(model, (pose, motion), &state.centroid, seconds);
-    let (pose, motion) = after(&state.pose, &state.motion);
-    let back = pose.try_inverse()?;
-    let mut derivative = DMatrix::zeros(2 * k, 2 * k);
-    for j in 0..2 * k {
-        let (mut of_pose, mut other) = (ParameterVector::default(), state.motion);
-        if j < k {
-            of_pose[j] = DIFFERENCE
-        } else {
-            other[j - k] += DIFFERENCE
-        }
-        let moved = model.flow(&of_pose[..k], 1.0).into_inner() * state.pose;
-        let (moved, later) = after(&moved, &other);
-        let change = model.parameters_of(&logarithm(&(moved * back))?);
-        for i in 0..k {
-            derivative[(i, j)] = change[i] / DIFFERENCE;
-            derivative[(k + i, j)] = (later[i] - motion[i]) / DIFFERENCE;
-        }
-    }
-    Some(derivative)
-}
-
-/// Pose and motion after some time in which the rates and the velocity of the centroid stay the same; the centroid is given in the body frame.
-fn straight(
-    model: MotionModel,
-    (pose, motion): (&Matrix3<f64>, &ParameterVector),
-    centroid: &Point2<f64>,
-    seconds: f64,
-) -> (Matrix3<f64>, ParameterVector) {
-    let k = model.parameter_count();
-    let generator = model.generator(&motion[..k]);
-    let linear = |m: &Matrix3<f64>| m.fixed_view::<2, 2>(0, 0).into_owned();
-    let part = |m: &Matrix3<f64>| m.fixed_view::<2, 1>(0, 2).into_owned();
-    let here = linear(pose) * centroid.coords + part(pose);
-    let velocity = linear(&generator) * here + part(&generator);
-    let there = here + seconds * velocity;
-    let turned = model.linear_flow(&motion[..k], seconds) * linear(pose);
-    let mut later = Matrix3::identity();
-    later.fixed_view_mut::<2, 2>(0, 0).copy_from(&turned);
-    later.fixed_view_mut::<2, 1>(0, 2).copy_from(&(there - turned * centroid.coords));
-    let mut of_later = generator;
-    of_later.fixed_view_mut::<2, 1>(0, 2).copy_from(&(velocity - linear(&generator) * there));
-    (later, model.parameters_of(&of_later))
-}
-
 #[cfg(test)]
 mod tests {
+    use freeform_riccati::ParameterVector;
+    use nalgebra::Point2;
+
     use super::*;
-    use crate::{motion_state::NormalisedState, smoother::smooth};
+    use crate::{
+        expected_derivative::straight, motion_state::NormalisedState, process_noise::ProcessNoise, smoother::smooth,
+    };
 
     const RIGID: MotionModel = MotionModel::Rigid;
     const STEP: f64 = 0.1;
@@ -259,8 +213,8 @@ mod tests {
         move || (0..12).map(|_| uniform()).sum()
     }
 
-    /// A body whose motion changes at random, followed by poses with noise: true motions, filtered states, and what was expected of each. `turning` is
-    /// whether the velocity of its centroid turns with it; a jump of the motion comes before a frame.
+    /// A body whose motion changes at random, followed by poses with noise: true motions, filtered states, and what was expected of each. `turning`
+    /// is whether the velocity of its centroid turns with it; a jump of the motion comes before a frame.
     fn followed(
         frames: usize,
         turning: bool,
@@ -287,7 +241,6 @@ mod tests {
             let expected = ExpectedState {
                 state: state(STEP * frame as f64, move_on(&known.pose, &known.motion), DMatrix::zeros(6, 6)),
                 turning_velocity,
-                systematic: DMatrix::zeros(6, 6),
             };
             let by = derivative(&known, &expected).expect("finite");
             let covariance = &by * &known.covariance * by.transpose() + &process;
@@ -367,33 +320,51 @@ mod tests {
     #[test]
     fn what_frames_have_in_common_is_not_averaged_out() {
         let (_, states, mut expected) = followed(40, true, 0.05, None, 1);
-        let common = DMatrix::from_fn(6, 6, |i, j| if i == j { 4.0 * states[20].covariance[(i, i)] } else { 0.0 });
+        // Correlated, and larger than what frames tell.
+        let common = DMatrix::from_fn(6, 6, |i, j| {
+            let deviations = [i, j].map(|i| 2.0 * states[20].within[(i, i)].sqrt());
+            deviations[0] * deviations[1] * if i == j { 1.0 } else { 0.9 }
+        });
         let off = |state: &MotionState| MotionState { covariance: &state.covariance + &common, ..state.clone() };
         let states: Vec<MotionState> = states.iter().map(off).collect();
-        for expected in expected.iter_mut().flatten() {
-            (expected.state, expected.systematic) = (off(&expected.state), common.clone());
-        }
-        for state in smooth_changing(&states, &expected).expect("a run") {
+        expected.iter_mut().flatten().for_each(|expected| expected.state = off(&expected.state));
+        let smoothed = smooth_changing(&states, &expected).expect("a run");
+        for (state, before) in smoothed.iter().zip(&states).take(39) {
             assert!((0..6).all(|i| state.covariance[(i, i)] > common[(i, i)]));
+            assert!(
+                state.covariance[(3, 3)] < before.covariance[(3, 3)] && state.covariance.clone().cholesky().is_some()
+            );
         }
     }
 
     #[test]
-    fn a_centroid_whose_velocity_stays_the_same_goes_straight_while_the_body_turns() {
-        let motion = [0.9, 0.4, -0.3, 0.0, 0.0, 0.0, 0.0, 0.0];
-        let mut body = (Matrix3::identity(), motion);
-        let place = |pose: &Matrix3<f64>| pose.transform_point(&CENTROID);
-        let places: Vec<Point2<f64>> = (0..5)
-            .map(|_| {
-                body = straight(RIGID, (&body.0, &body.1), &CENTROID, STEP);
-                place(&body.0)
-            })
-            .collect();
-        let velocity = RIGID.generator(&motion[..3]) * CENTROID.to_homogeneous();
-        for (k, at) in (1..).zip(&places) {
-            let straight = CENTROID + f64::from(k) * STEP * velocity.xy();
-            assert!((at - straight).norm() < 1e-12, "{at} {straight}");
+    fn along_what_the_outline_does_not_show_nothing_is_handed_back() {
+        let (_, states, mut expected) = followed(30, true, 0.05, None, 1);
+        // As of a disc about the origin: nothing is known of the turn, and nothing wrong with it.
+        let blind = |covariance: &DMatrix<f64>| {
+            DMatrix::from_fn(6, 6, |i, j| if i % 3 == 0 || j % 3 == 0 { 0.0 } else { covariance[(i, j)] })
+        };
+        let of = |state: &MotionState| MotionState {
+            covariance: blind(&state.covariance),
+            within: blind(&state.within),
+            ..state.clone()
+        };
+        let states: Vec<MotionState> = states.iter().map(of).collect();
+        expected.iter_mut().flatten().for_each(|expected| expected.state = of(&expected.state));
+        for (state, before) in smooth_changing(&states, &expected).expect("a run").iter().zip(&states) {
+            assert_eq!(state.motion[0], before.motion[0]);
+            assert!(state.covariance.iter().all(|entry| entry.is_finite()));
         }
-        assert!((body.1[0] - motion[0]).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_motion_a_whole_turn_a_frame_apart_hands_nothing_back() {
+        let (_, mut states, expected) = followed(30, true, 0.002, None, 1);
+        let before: Vec<f64> = states.iter().take(15).map(|state| state.motion[0]).collect();
+        states.iter_mut().skip(15).for_each(|state| state.motion[0] += std::f64::consts::TAU / STEP);
+        let smoothed = smooth_changing(&states, &expected).expect("a run");
+        for (state, before) in smoothed.iter().zip(before) {
+            assert!((state.motion[0] - before).abs() < 0.5, "{} {before}", state.motion[0]);
+        }
     }
 }

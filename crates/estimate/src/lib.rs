@@ -23,6 +23,7 @@
 //! ```
 mod bound;
 mod changing_motion;
+mod expected_derivative;
 mod information;
 mod motion_estimate;
 mod motion_state;

@@ -84,6 +84,7 @@ fn begun(tracker: &PyTracker, smooth: bool) -> Recording {
 #[derive(Debug)]
 pub(crate) struct PyRecorder {
     recording: Mutex<Recording>,
+    smooth: bool,
 }
 
 #[pymethods]
@@ -91,7 +92,7 @@ impl PyRecorder {
     #[new]
     #[pyo3(signature = (tracker, smooth = false))]
     fn new(tracker: &PyTracker, smooth: bool) -> Self {
-        Self { recording: Mutex::new(begun(tracker, smooth)) }
+        Self { recording: Mutex::new(begun(tracker, smooth)), smooth }
     }
 
     /// Adds the observation of a frame.
@@ -100,10 +101,10 @@ impl PyRecorder {
     }
 
     /// Columns with one row per observation; afterwards it is empty.
-    fn columns<'py>(&self, py: Python<'py>, tracker: &PyTracker, smooth: bool) -> PyResult<Bound<'py, PyDict>> {
+    fn columns<'py>(&self, py: Python<'py>, tracker: &PyTracker) -> PyResult<Bound<'py, PyDict>> {
         let empty = Recording::new(&tracker.lock());
         let recording = std::mem::replace(&mut *self.recording.lock().unwrap_or_else(PoisonError::into_inner), empty);
-        recording.columns(py, tracker, smooth)
+        recording.columns(py, tracker, self.smooth)
     }
 }
 

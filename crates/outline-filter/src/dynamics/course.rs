@@ -40,8 +40,8 @@ pub(super) enum Course {
         /// In standard deviations of a pose as the points of a frame tell it.
         deviations: f64,
     },
-    /// The velocity of a point of the object stays. In place of accelerations its state has the part of the velocity of the centroid that turns with the
-    /// object.
+    /// The velocity of a point of the object stays. In place of accelerations its state has the part of the velocity of the centroid that turns with
+    /// the object.
     ConstantVelocity {
         of: PointOfBody,
         /// As those of [`Shaken`](Self::Shaken); none where the camera stands still.
@@ -54,8 +54,8 @@ pub(super) enum Course {
         /// Whether the rates do as well, or the velocity of the centroid alone, as of an object that spins while it falls.
         rates: bool,
     },
-    /// The generator changes at rates that change at random, which its state has in place of accelerations: the velocity of the centroid turns with the
-    /// object, as of one that speeds up about a fixed point.
+    /// The generator changes at rates that change at random, which its state has in place of accelerations: the velocity of the centroid turns with
+    /// the object, as of one that speeds up about a fixed point.
     ChangingGenerator {
         /// As that of accelerations.
         level: f64,
@@ -170,8 +170,8 @@ impl Course {
         }
     }
 
-    /// Whether it takes the step that has led to its beginning to have been straight. Those that accelerate begin with the arc: begun with the chord they
-    /// explain the first frames of a straight flight as well as a constant velocity does, whose errors were a tenth larger then.
+    /// Whether it takes the step that has led to its beginning to have been straight. Those that accelerate begin with the arc: begun with the chord
+    /// they explain the first frames of a straight flight as well as a constant velocity does, whose errors were a tenth larger then.
     pub(super) fn has_run_straight(self) -> bool {
         matches!(self, Self::ConstantVelocity { .. } | Self::SteadyChange { turns: false })
     }
@@ -204,7 +204,8 @@ impl Course {
         }
     }
 
-    /// The first of k parameters that changes at random, where accelerations do: the velocity of the centroid, and the rates before it if they change.
+    /// The first of k parameters that changes at random, where accelerations do: the velocity of the centroid, and the rates before it if they
+    /// change.
     pub(super) fn first_changing(self, k: usize) -> usize {
         match self.rates() {
             Rates::ChangeAtRandom => 0,

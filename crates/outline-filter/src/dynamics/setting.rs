@@ -12,8 +12,8 @@ pub enum Dynamics {
     Generator,
     /// Constant rates and a constant velocity of the centroid, as of an object that is thrown or slides.
     Velocity,
-    /// Nearly constant accelerations of the rates and of the velocity of the centroid, or a generator that changes nearly steadily, as of an object that
-    /// speeds up about a fixed point.
+    /// Nearly constant accelerations of the rates and of the velocity of the centroid, or a generator that changes nearly steadily, as of an object
+    /// that speeds up about a fixed point.
     Accelerating,
 }
 

@@ -6,9 +6,9 @@ use super::OutlineMap;
 use crate::tuning::update::{FARTHEST, FLATTEST, LEAST_DEPTH};
 
 impl OutlineMap {
-    /// Whether a pose shows the outline: it is near enough to be told from a point, is seen from its front and nowhere from its edge, and all of it lies on one side of the line that goes to
-    /// infinity, none of it close by. No other pose can be worked with: points of the outline lie beyond any number, and errors of the pose move
-    /// them by as much.
+    /// Whether a pose shows the outline: it is near enough to be told from a point, is seen from its front and nowhere from its edge, and all of it
+    /// lies on one side of the line that goes to infinity, none of it close by. No other pose can be worked with: points of the outline lie beyond
+    /// any number, and errors of the pose move them by as much.
     ///
     /// Poses begin with the identity and move on continuously; one that is mirrored has been reached by a step over a pose that shows nothing.
     pub(crate) fn is_shown_in(&self, pose: &Matrix3<f64>) -> bool {

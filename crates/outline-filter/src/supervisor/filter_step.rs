@@ -9,8 +9,8 @@ pub struct FilterStep {
     pub time: f64,
     /// Phase after the frame.
     pub phase: Phase,
-    /// Comparison with the known outline in the pose that was tried last; of a lost object that only a part of all turns has been searched for, where it
-    /// was expected. `None` if there was no outline or no pose to compare with, or the frame was not searched.
+    /// Comparison with the known outline in the pose that was tried last; of a lost object that only a part of all turns has been searched for, where
+    /// it was expected. `None` if there was no outline or no pose to compare with, or the frame was not searched.
     pub measurement: Option<FrameMeasurement>,
     /// Why the frame was not used; `None` if it was used.
     pub rejection: Option<Rejection>,

@@ -162,8 +162,8 @@ impl MotionFilter {
         Ok(FilterStep { time: seconds, phase: self.phase, measurement, rejection })
     }
 
-    /// Processes a frame after the first, at a time in units of time: it is followed where the object is tracked, else looked for; what is taken is kept
-    /// for remapping, and after frames that are not taken the filter may fall back on others.
+    /// Processes a frame after the first, at a time in units of time: it is followed where the object is tracked, else looked for; what is taken is
+    /// kept for remapping, and after frames that are not taken the filter may fall back on others.
     pub(super) fn process(&mut self, time: f64, outline: &Outline) -> (Option<FrameMeasurement>, Option<Rejection>) {
         self.do_what_is_due();
         self.measure_before_next();

@@ -39,15 +39,15 @@ impl MotionFilter {
         is_taken && self.track.as_ref().is_some_and(Track::usually_agrees)
     }
 
-    /// Whether the map holds an edge that was just found as a side of the object, as it does where the object was cut off by it from the beginning on.
-    /// A map of what lies beyond the edge was begun before, and stays.
+    /// Whether the map holds an edge that was just found as a side of the object, as it does where the object was cut off by it from the beginning
+    /// on. A map of what lies beyond the edge was begun before, and stays.
     pub(super) fn holds_edge(&self, left: &Outline) -> bool {
         self.track.as_ref().is_some_and(|track| self.edges.cuts_off(track.outline_points(), &left.centroid()))
     }
 
-    /// Processes what is left of a frame. Where it `shows_edge` that was not known, and a map that explained the frames before disagrees, the edge has led
-    /// that map astray although it was not taken for a side of it: then a new one is begun. A wrong frame of an object that is not tracked is none to
-    /// begin with.
+    /// Processes what is left of a frame. Where it `shows_edge` that was not known, and a map that explained the frames before disagrees, the edge
+    /// has led that map astray although it was not taken for a side of it: then a new one is begun. A wrong frame of an object that is not tracked is
+    /// none to begin with.
     pub(super) fn process_beside_edges(
         &mut self,
         time: f64,

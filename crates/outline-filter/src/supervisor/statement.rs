@@ -35,7 +35,7 @@ pub enum Unstated {
 }
 
 impl MotionFilter {
-    pub(super) fn statement(&self) -> Option<&Statement> {
+    fn statement(&self) -> Option<&Statement> {
         self.stated.get_or_init(|| self.stated_now()).as_ref()
     }
 

@@ -9,8 +9,8 @@ use super::{
 use crate::{track::Outcome, tuning::supervisor::UNSEEN_STEPS};
 
 impl MotionFilter {
-    /// Takes an object to be lost that has gone unseen for so long that nobody knows how far it has turned: linearisations would lead to any number of whole
-    /// turns, and the motion with them.
+    /// Takes an object to be lost that has gone unseen for so long that nobody knows how far it has turned: linearisations would lead to any number
+    /// of whole turns, and the motion with them.
     pub(super) fn lose_if_turn_is_unknown(&mut self, time: f64) {
         if !self.has_gone_unseen(time) {
             return;
@@ -23,8 +23,8 @@ impl MotionFilter {
         }
     }
 
-    /// Follows the object to a frame, as [`follow`](Self::follow) does. One that has gone unseen and is not where it was expected has moved on as nobody
-    /// has seen: it is lost, and looked for elsewhere. What it was expected to do says nothing of it any more.
+    /// Follows the object to a frame, as [`follow`](Self::follow) does. One that has gone unseen and is not where it was expected has moved on as
+    /// nobody has seen: it is lost, and looked for elsewhere. What it was expected to do says nothing of it any more.
     pub(super) fn follow_or_lose(&mut self, time: f64, outline: &Outline) -> Option<Outcome> {
         let before = (self.counts.rejected_in_a_row == 0 && self.has_gone_unseen(time)).then(|| self.clone());
         let outcome = self.follow(time, outline);
@@ -51,7 +51,7 @@ impl MotionFilter {
     }
 
     /// Whether the step to a frame of the object that is tracked is much longer than the one before, as where frames are missing.
-    fn has_gone_unseen(&self, time: f64) -> bool {
+    pub(super) fn has_gone_unseen(&self, time: f64) -> bool {
         let seconds = time - self.clock.of_track;
         self.phase == Phase::Tracking
             && self.track.as_ref().is_some_and(|track| seconds > UNSEEN_STEPS * track.belief().memory.step)

@@ -178,8 +178,8 @@ pub(crate) mod update {
     pub(crate) const ROUNDING_OF_VARIANCE: f64 = 1e-12;
     /// Determinant of a pose below which it has collapsed.
     pub(crate) const COLLAPSED: f64 = 1e-12;
-    /// Sizes of the object from where it was first seen beyond which nothing can be told of it: numbers of sixteen digits leave a ten-millionth of its
-    /// size there.
+    /// Sizes of the object from where it was first seen beyond which nothing can be told of it: numbers of sixteen digits leave a ten-millionth of
+    /// its size there.
     pub(crate) const FARTHEST: f64 = 1e9;
     /// Share of the farthest depth of an outline that the nearest must have: a camera as close to a plane as that shows a part of it only. Rates of
     /// points grow with the square of their share, and variances with the fourth power, which leaves four of sixteen digits.

@@ -62,11 +62,11 @@ pub enum Rejection {
         /// Standard deviation of this frame's noise, image lengths.
         noise: f64,
     },
-    /// The frame repeats the one before it to the last digit, and the object is not known to be at rest: a picture that was stored twice shows nothing of
-    /// the time that it is given with. After three in a row the object rests.
+    /// The frame repeats the one before it to the last digit, and the object is not known to be at rest: a picture that was stored twice shows
+    /// nothing of the time that it is given with. After three in a row the object rests.
     Repeated,
-    /// All but a few points lie along [edges](crate::MotionFilter::standing_edges) that are not of the object, which may be behind them. That says nothing
-    /// against what is known of it.
+    /// All but a few points lie along [edges](crate::MotionFilter::standing_edges) that are not of the object, which may be behind them. That says
+    /// nothing against what is known of it.
     Hidden,
     /// No pose was found, or none that linearisations settle in; or none was looked for, as too many frames have been searched in vain, or as the
     /// frame has too few points to confirm the step between two frames that show parts of the object; or a third frame does not bear out that step,

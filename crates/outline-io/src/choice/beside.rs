@@ -56,8 +56,8 @@ impl Beside {
         self.others.iter().flatten().flatten().filter(move |sight| sight.frame == frame)
     }
 
-    /// Whether another thing stands still while this one moves, which then is no part of it. The outline of a wheel hardly moves as it turns, but does not
-    /// stand still: its teeth are parts of it, and look as if they went anywhere, being alike.
+    /// Whether another thing stands still while this one moves, which then is no part of it. The outline of a wheel hardly moves as it turns, but
+    /// does not stand still: its teeth are parts of it, and look as if they went anywhere, being alike.
     fn stands(&self, other: &Sight, [before, _, after]: &Chain) -> bool {
         let seen = |frame: u64| {
             let far = |sight: &&Sight| (sight.centre - other.centre).norm();

@@ -43,9 +43,9 @@ struct OfEdges {
     blur: f64,
 }
 
-/// What grey values stand for, where the pictures tell it. A body that its motion blurs seems to change its size with its speed where they are taken for
-/// something else; and its edges, which are as wide in the light on their darker side as on their lighter one, seem to have more light on one. The
-/// sizes are what counts, and where they do not tell it, wide edges do. Else grey values are taken as they are.
+/// What grey values stand for, where the pictures tell it. A body that its motion blurs seems to change its size with its speed where they are taken
+/// for something else; and its edges, which are as wide in the light on their darker side as on their lighter one, seem to have more light on one.
+/// The sizes are what counts, and where they do not tell it, wide edges do. Else grey values are taken as they are.
 pub(super) fn transfer_of(sample: &PictureSample, base: &PictureSettings, tracing: &Tracing) -> Transfer {
     let has_light = !sample.is_two_valued() && !tracing.way.is_ring() && tracing.channel != Channel::Saturation;
     if !has_light || base.trace.transfer != Transfer::Linear {

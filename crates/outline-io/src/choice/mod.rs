@@ -50,7 +50,7 @@ pub enum TracingWay {
     /// A light line is around them.
     LightRing,
     /// They differ from the ground of the whole sequence: the median of pictures of it, without what rests in most of these and leaves or comes
-    /// ([`ground_picture`](crate::ground::ground_picture)).
+    /// ([`ground_picture`](crate::ground_picture)).
     Median(Difference),
     /// They differ from a smooth surface through the ground of each picture.
     Surface(Difference),
@@ -187,7 +187,8 @@ impl TracingChoice {
         self.best().is_some_and(|best| best.score >= TracingChoice::CONVINCING)
     }
 
-    /// These settings with what was found of the pictures whatever the way: margins and transfer function. [`Tracing::settings`] puts a way into them.
+    /// These settings with what was found of the pictures whatever the way: margins and transfer function. [`Tracing::settings`] puts a way into
+    /// them.
     #[must_use]
     pub fn base(&self, settings: &PictureSettings) -> PictureSettings {
         let trace = TraceSettings { margins: Some(self.margins), transfer: self.transfer, ..settings.trace };

@@ -104,8 +104,8 @@ fn largest_that_moves(trial: &Trial, tracing: &Tracing, is_asked: impl Fn(&Sight
     evidence_of(trial, *tracing, &sights).filter(|found| !found.rests && found.score >= TracingChoice::CONVINCING)
 }
 
-/// Whether a way whose largest object rests shows another one that moves, such as one that turns in its place, of which differences from the median of
-/// the pictures show fragments alone. Of masks, which no median is made of, too.
+/// Whether a way whose largest object rests shows another one that moves, such as one that turns in its place, of which differences from the median
+/// of the pictures show fragments alone. Of masks, which no median is made of, too.
 fn shows_what_moves(sample: &PictureSample, base: &PictureSettings, tracing: &Tracing) -> bool {
     let trial = Trial::whole(sample, base, tracing.channel);
     let Some(still) = trial.first_sight(tracing) else { return false };

@@ -34,8 +34,8 @@ pub(super) mod chains {
     pub(in crate::choice) const CLEAR: f64 = 0.75;
 }
 
-/// The score of a way of tracing: a product of shares. The values were set by hand so that what a person would choose comes first in simulated and real
-/// sequences.
+/// The score of a way of tracing: a product of shares. The values were set by hand so that what a person would choose comes first in simulated and
+/// real sequences.
 pub(super) mod score {
     /// What moves by more than so many pixels in all moves beyond the rounding of its outline; the share of the score that what rests keeps.
     pub(in crate::choice) const MOVES: f64 = 1.5;
@@ -127,8 +127,8 @@ pub(super) mod ties {
 
 /// How grey values stand for light.
 pub(super) mod light {
-    /// Outlines are of one body, or of bodies that are alike, where its sizes differ by less than this share, by one of what grey values may stand for:
-    /// a fifth of a pixel of a small body of twenty changes them by a hundredth, and perspective by some.
+    /// Outlines are of one body, or of bodies that are alike, where its sizes differ by less than this share, by one of what grey values may stand
+    /// for: a fifth of a pixel of a small body of twenty changes them by a hundredth, and perspective by some.
     pub(in crate::choice) const ALIKE: f64 = 0.05;
 
     /// Pictures of a body that tell how its size changes: two bursts.

@@ -29,9 +29,9 @@ const FEWEST_DIRECTIONS: usize = 4;
 /// or of the four sides of a square, next to none of the sides of a thin bar.
 const SPREAD: f64 = 0.2;
 
-/// The blur differs by direction where its variance does so by this share of its mean either way, so that the wider edges are 1.4 times as wide: those
-/// of optics and grids differ by less. And by so many of its deviations, which are told by how well widths of all directions, opposite ones among them,
-/// agree with one motion: shadows and light beside the body are seen on one side.
+/// The blur differs by direction where its variance does so by this share of its mean either way, so that the wider edges are 1.4 times as wide:
+/// those of optics and grids differ by less. And by so many of its deviations, which are told by how well widths of all directions, opposite ones
+/// among them, agree with one motion: shadows and light beside the body are seen on one side.
 const DIFFERS: f64 = 0.35;
 const CLEARLY: f64 = 4.0;
 

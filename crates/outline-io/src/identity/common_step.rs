@@ -9,15 +9,15 @@ use crate::tracing::trace::TracedOutline;
 /// Farthest that one of them may be from where the step leads it, in its diameters.
 const TOLERANCE: f64 = 0.25;
 
-/// Where its centre is farther from the border than so many of its sizes a thing is whole: half of one, and more as the centre of its area is not that
-/// of the box around it.
+/// Where its centre is farther from the border than so many of its sizes a thing is whole: half of one, and more as the centre of its area is not
+/// that of the box around it.
 const FROM_BORDER: f64 = 0.65;
 
 /// Fewer things than these make no step together where there are others: two of several do so by chance.
 const FEWEST: usize = 3;
 
-/// Things that may be missing in one of two pictures where another step is as good. A row with its ends in the picture that is taken for its neighbours
-/// leaves two over, one at either end.
+/// Things that may be missing in one of two pictures where another step is as good. A row with its ends in the picture that is taken for its
+/// neighbours leaves two over, one at either end.
 const ONE_MISSED: usize = 1;
 
 /// Steps that are looked at: the most frequent ones.
@@ -96,9 +96,9 @@ impl TwoPictures {
         Assignment { step, pairs, unexplained }
     }
 
-    /// The step that, beside those found one by one whose things it leaves over, explains more of what is seen than they do, and the smallest of these: of
-    /// a row of things that goes on beyond the picture on both sides, other steps explain as much. `None` where there is none of half of the things. One
-    /// thing alone makes another step than it was found to make only where that explains all that is seen.
+    /// The step that, beside those found one by one whose things it leaves over, explains more of what is seen than they do, and the smallest of
+    /// these: of a row of things that goes on beyond the picture on both sides, other steps explain as much. `None` where there is none of half of
+    /// the things. One thing alone makes another step than it was found to make only where that explains all that is seen.
     pub(crate) fn better_than(&self, found: &Assignment) -> Option<Assignment> {
         let (most, is_alone) = (self.before.len().min(self.now.len()), self.before.len() == 1);
         if is_alone && found.pairs.is_empty() {

@@ -76,8 +76,8 @@ impl Identities {
         Self { selection, known, next_name: 0, contacts, among_alike, extent: None }
     }
 
-    /// Says what the pictures show of the plane, in the unit of the outlines. What leaves it is not missed, and what enters it was not to be seen before; of
-    /// pictures of which that is not said, all is.
+    /// Says what the pictures show of the plane, in the unit of the outlines. What leaves it is not missed, and what enters it was not to be seen
+    /// before; of pictures of which that is not said, all is.
     pub fn set_extent(&mut self, extent: Rectangle) {
         self.extent = Some(extent);
     }
@@ -226,8 +226,8 @@ impl Identities {
         }
     }
 
-    /// Assigns what has been seen once and is cut by the border in one of two pictures, where things that are whole have made a step together: so that it
-    /// makes the step too, or stays where it is.
+    /// Assigns what has been seen once and is cut by the border in one of two pictures, where things that are whole have made a step together: so
+    /// that it makes the step too, or stays where it is.
     fn assign_cut(&self, frame: u64, traced: &[TracedOutline], seen_as: &mut [Option<usize>], step: Vector2<f64>) {
         let is_cut = |known: &usize| {
             let Known { velocity, clipped, frame: last, .. } = &self.known[*known];

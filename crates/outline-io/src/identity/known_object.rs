@@ -35,8 +35,8 @@ const LARGEST_GROWTH_OF_ONE: f64 = 1.25;
 /// less: by up to 0.08 for a robot of 16,000 pixels, by up to 0.21 for a thin bolt of 4,500 with a blurred edge.
 const OTHER_SHAPE: f64 = 0.5;
 
-/// The same up to which things that make one step together may be alike: of two small ones the edges of one may not be found, so that it is fatter and
-/// rounder.
+/// The same up to which things that make one step together may be alike: of two small ones the edges of one may not be found, so that it is fatter
+/// and rounder.
 const MAY_BE_ALIKE: f64 = 1.0;
 
 /// The cost of a sighting at the farthest place, of the largest growth and of another shape.

@@ -21,8 +21,8 @@ const LARGEST_PER_LABEL: i64 = 4;
 pub struct LabelEvidence {
     /// Different labels in the pictures that were looked at, two at least where no borders are marked as void.
     pub labels: usize,
-    /// Whether they are small numbers, as labels are and grey values hardly ever. Places in a palette are small in drawings too, and count only in that of
-    /// PASCAL VOC.
+    /// Whether they are small numbers, as labels are and grey values hardly ever. Places in a palette are small in drawings too, and count only in
+    /// that of PASCAL VOC.
     pub are_numbers: bool,
     /// Whether every label borders on the ground with half of its edge or more: a mark on a body does not.
     pub are_on_ground: bool,

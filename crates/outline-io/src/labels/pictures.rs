@@ -77,8 +77,8 @@ impl LabelPicture {
         if is_around { Self::of(&picture, || places_of_png(path)) } else { None }
     }
 
-    /// The grey values, or the numbers of colours that label masks are painted with, those of PASCAL VOC or of a palette of the picture; nothing of other
-    /// pictures. Borders that are marked as void are shared out.
+    /// The grey values, or the numbers of colours that label masks are painted with, those of PASCAL VOC or of a palette of the picture; nothing of
+    /// other pictures. Borders that are marked as void are shared out.
     pub(crate) fn of(picture: &DynamicImage, places: impl FnOnce() -> Option<GrayImage>) -> Option<Self> {
         let (width, height) = (picture.width() as usize, picture.height() as usize);
         let mut numbering = Numbering::Grey;
@@ -241,8 +241,8 @@ impl LabelPictures {
         self.left_out.as_ref()
     }
 
-    /// The number of the first mask so far that marks borders of its objects as void, with 255: half of such a border, from the middle on, is taken for
-    /// the object.
+    /// The number of the first mask so far that marks borders of its objects as void, with 255: half of such a border, from the middle on, is taken
+    /// for the object.
     #[must_use]
     pub const fn void_in(&self) -> Option<u64> {
         self.void_in

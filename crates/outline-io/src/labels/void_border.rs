@@ -7,7 +7,8 @@ use crate::labels::evidence::LARGEST_NUMBER;
 /// The value of such borders, which is no number of an object where all others are small.
 const VOID: i64 = 255;
 
-/// Farthest that the middle of a border is from what it lies between, in pixels: those of PASCAL VOC are five pixels wide, and somewhat more at corners.
+/// Farthest that the middle of a border is from what it lies between, in pixels: those of PASCAL VOC are five pixels wide, and somewhat more at
+/// corners.
 const HALF_WIDTH: usize = 5;
 
 /// Most of the sides of pixels where an object lies at the ground, over those where it lies at a border: borders go all around objects.

@@ -25,10 +25,10 @@ const GROUP_POINTS: usize = 1 << 20;
 /// Outlines after which a row group is written, however small they are.
 const GROUP_ROWS: usize = 1 << 16;
 
-/// Writes outlines one by one as Parquet with one row per outline: `object`, `frame`, `time`, `x` and `y`, and where the options ask for
-/// them `arc`, `contour`, `deviation` and `warning`. `x` and `y` are lists of floats, `arc` and `contour` lists of whole numbers as long, or null, and
-/// `deviation` lists of floats as long, or null.
-/// [`ParquetReader`](crate::ParquetReader) reads the file back to the last bit, as it does CSV. The column `object` is always there.
+/// Writes outlines one by one as Parquet with one row per outline: `object`, `frame`, `time`, `x` and `y`, and where the options ask for them `arc`,
+/// `contour`, `deviation` and `warning`. `x` and `y` are lists of floats, `arc` and `contour` lists of whole numbers as long, or null, and
+/// `deviation` lists of floats as long, or null. [`ParquetReader`](crate::ParquetReader) reads the file back to the last bit, as it does CSV. The
+/// column `object` is always there.
 ///
 /// Rows are gathered until they have a million points. Nothing can be read before [`Self::finish`] has written the table of contents.
 pub struct ParquetWriter<W> {

@@ -153,8 +153,8 @@ fn decode_colours(source: &mut dyn Source) -> Result<(DynamicImage, Orientation)
     Ok((with_small_values(DynamicImage::from_decoder(decoder).map_err(damaged)?), orientation))
 }
 
-/// A mask or labels in 16 bits, as programs that mark objects write them: where all values are such of 8 bits they are taken as these. Of other pictures
-/// of 16 bits the upper 8 are looked at.
+/// A mask or labels in 16 bits, as programs that mark objects write them: where all values are such of 8 bits they are taken as these. Of other
+/// pictures of 16 bits the upper 8 are looked at.
 fn with_small_values(picture: DynamicImage) -> DynamicImage {
     let DynamicImage::ImageLuma16(wide) = &picture else { return picture };
     let values: Result<Vec<u8>, _> = wide.as_raw().iter().map(|value| u8::try_from(*value)).collect();

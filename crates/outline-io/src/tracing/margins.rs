@@ -14,8 +14,8 @@ const ALONG: f64 = 0.8;
 const OTHER: u8 = 16;
 const OF_EIGHT: usize = 6;
 
-/// Rows farther in, as many as a bar has at least, of which so large a share has its grey value in as many pictures, are of the same ground: bodies on
-/// it hide less of it.
+/// Rows farther in, as many as a bar has at least, of which so large a share has its grey value in as many pictures, are of the same ground: bodies
+/// on it hide less of it.
 const GROUND: f64 = 0.6;
 
 /// Fewest rows of a bar: fewer are the edge of a picture that has been scaled or filtered.

@@ -77,8 +77,8 @@ pub struct TraceSettings {
     pub smoothing: Smoothing,
     /// Whether the outline is moved onto the edge itself.
     pub edges: Edges,
-    /// How grey values stand for light, of which blurred edges are a mean. For edges that are refined alone: not for masks and rings, and of no use for
-    /// channels that are no light, such as the saturation. [`EdgeProfile`](crate::EdgeProfile) looks for edges in grey values.
+    /// How grey values stand for light, of which blurred edges are a mean. For edges that are refined alone: not for masks and rings, and of no use
+    /// for channels that are no light, such as the saturation. [`EdgeProfile`](crate::EdgeProfile) looks for edges in grey values.
     #[cfg_attr(feature = "serde", serde(default))]
     pub transfer: Transfer,
     /// Smallest object accepted, in pixels.

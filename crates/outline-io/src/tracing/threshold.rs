@@ -30,9 +30,9 @@ const CORNER: u32 = 8;
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Threshold {
-    /// Half-way between the median grey values of the two classes that Otsu's method finds; for a mask, half-way between
-    /// its two values. Where the class of the objects is the ground, with three corners of the picture and more than half of it, or neither stands out
-    /// from the other, half-way to what lies far beyond the noise of the ground, if that is neither a speck nor large.
+    /// Half-way between the median grey values of the two classes that Otsu's method finds; for a mask, half-way between its two values. Where the
+    /// class of the objects is the ground, with three corners of the picture and more than half of it, or neither stands out from the other, half-way
+    /// to what lies far beyond the noise of the ground, if that is neither a speck nor large.
     #[default]
     Automatic,
     /// A grey value of the picture, above 0 and up to 255.

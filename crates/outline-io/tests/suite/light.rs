@@ -17,8 +17,8 @@ fn srgb(light: f64) -> u8 {
     (255.0 * value).round() as u8
 }
 
-/// A disc of radius 40 that has moved by `way` pixels to the right while the shutter was open, in a picture of 160 by 120: the mean of its light, from
-/// `ground` to `body`, before it is told as grey values by the transfer function.
+/// A disc of radius 40 that has moved by `way` pixels to the right while the shutter was open, in a picture of 160 by 120: the mean of its light,
+/// from `ground` to `body`, before it is told as grey values by the transfer function.
 fn moved_disc(way: f64, [ground, body]: [f64; 2]) -> GrayImage {
     GrayImage::from_fn(160, 120, |column, row| {
         let place = [f64::from(column) + 0.5 - 80.3, f64::from(row) + 0.5 - 60.1];
@@ -103,8 +103,8 @@ fn points_of_edges_in_light_lie_off_by_as_much_as_they_state() {
     }
 }
 
-/// A bar that speeds up and turns slowly, blurred by the way that it goes while the shutter is open for a share of the time between two pictures, of these
-/// grey values on ground of others. They are those of the light to the power of `1 / gamma`.
+/// A bar that speeds up and turns slowly, blurred by the way that it goes while the shutter is open for a share of the time between two pictures, of
+/// these grey values on ground of others. They are those of the light to the power of `1 / gamma`.
 fn bar_that_speeds_up(gamma: f64, exposure: f64, greys: [f64; 2]) -> Vec<GrayImage> {
     moving_bar(gamma, exposure, greys, |time| (50.0 + time + 0.4 * time * time, 0.04 * time))
 }

@@ -207,7 +207,7 @@ def track(
         recorder = Recorder(tracker, smooth)
         for observation in _follow(tracker, data, fps, times, tracer, progress):
             recorder.take(observation)
-        found = recorder.columns(tracker, smooth)
+        found = recorder.columns(tracker)
     return table_like(kind or "mapping", with_names(found, tracker.objects))
 
 
