@@ -104,9 +104,9 @@ def test_a_motion_that_changes_is_smoothed_as_well_as_a_constant_one(bird):
     filtered = ff.track(table)
     for name in ["constant", "swinging"]:
         rows = smoothed["object"] == name
-        assert not np.array_equal(smoothed["omega"][rows], filtered["omega"][rows], equal_nan=True)
-        error = smoothed["omega"][rows][15:] + np.where(name == "swinging", 4.8 * np.cos(6.0 * smoothed["time"][rows][15:]), 0.0)
-        assert np.isfinite(smoothed["omega"][rows][15:]).sum() > 0, error
+        before, after = filtered["omega"][rows], smoothed["omega"][rows]
+        assert np.isfinite(after).sum() > 10
+        assert not np.array_equal(before, after, equal_nan=True)
 
 
 def test_the_adaptive_method_has_a_motion_and_no_pose(table):
