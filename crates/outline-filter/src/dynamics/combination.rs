@@ -169,6 +169,14 @@ impl<const N: usize> InteractingHypotheses<N> {
         self.about_origin(&mean, &covariance)
     }
 
+    /// How much a hypothesis has explained the frames of late. One that forgets soon has to have explained several: what explains a sudden push says nothing
+    /// of the frames after it, and what has explained all of a body that swings fast explains them again once it has turned round.
+    fn recent_weight(&self, number: usize) -> f64 {
+        let recent = self.recent_weights[number];
+        let is_forgetful = self.hypotheses.get(number).is_some_and(|hypothesis| hypothesis.course.is_forgetful());
+        if is_forgetful && recent < tuning::SEVERAL { 0.0 } else { recent }
+    }
+
     /// The hypotheses that are not left out, mean and covariance of a constant generator replaced by what is known of it, if that is.
     fn parts(
         &self,
@@ -178,7 +186,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         // What explained the frames of late may be needed again in the next.
         let counted: [f64; MOST] = match purpose {
             Purpose::Prediction | Purpose::PredictionByOthers => self.weights,
-            Purpose::Statement => std::array::from_fn(|number| self.weights[number].max(self.recent_weights[number])),
+            Purpose::Statement => std::array::from_fn(|number| self.weights[number].max(self.recent_weight(number))),
         };
         let likely = Self::least_weight(&counted, tuning::OUTSIDE_INTERVAL);
         let least = match purpose {

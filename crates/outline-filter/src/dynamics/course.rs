@@ -192,6 +192,11 @@ impl Course {
         self.level().map_or(f64::INFINITY, |level| (tuning::MEMORY * level.powf(-1.0 / 6.0)).max(1.0))
     }
 
+    /// Whether it remembers only a few steps.
+    pub(super) fn is_forgetful(self) -> bool {
+        self.memory() < tuning::REMEMBERED
+    }
+
     /// What its rates do. Those of a steady change have no random part.
     pub(super) fn rates(self) -> Rates {
         match self {

@@ -46,7 +46,7 @@ pub(crate) struct InteractingHypotheses<const N: usize> {
     pub(super) steady_change: Option<SteadyChange<N>>,
     /// In the same order; zeros behind them.
     pub(super) weights: Weights,
-    /// Means over the last frames of those which remember several steps, none in frames in which no changing motion led.
+    /// Means over the last frames, none in frames in which no changing motion led.
     pub(super) recent_weights: Weights,
     /// What the errors of all poses are taken from.
     pub(super) reference: CentredPose,
@@ -286,8 +286,8 @@ impl<const N: usize> InteractingHypotheses<N> {
         }
         let weights = self.hypotheses.iter().zip(&self.weights);
         for (recent, (hypothesis, weight)) in self.recent_weights.iter_mut().zip(weights) {
-            let counts = self.leads && hypothesis.course.memory() >= tuning::REMEMBERED;
-            *recent += tuning::RECENT_GAIN * (if counts { *weight } else { 0.0 } - *recent);
+            let gain = if hypothesis.course.is_forgetful() { tuning::FORGETFUL_GAIN } else { tuning::RECENT_GAIN };
+            *recent += gain * (if self.leads { *weight } else { 0.0 } - *recent);
         }
     }
 

@@ -134,8 +134,11 @@ pub(crate) mod dynamics {
     /// Share of a frame in the mean of weights over the last frames. A body that swings looks, as it is fastest or turns round, for about ten frames as if
     /// its motion hardly changed.
     pub(crate) const RECENT_GAIN: f64 = 1.0 / 16.0;
-    /// Steps that a hypothesis remembers at least whose mean counts: what explains a sudden push says nothing of the frames after it.
+    /// Steps below which a hypothesis is said to forget soon: its mean has a gain of its own, of which ten frames leave a quarter, and counts where it has
+    /// explained several frames, three in a row at least.
     pub(crate) const REMEMBERED: f64 = 4.0;
+    pub(crate) const FORGETFUL_GAIN: f64 = 1.0 / 8.0;
+    pub(crate) const SEVERAL: f64 = 0.25;
     /// Deviations of a pose that an acceleration which begins moves the object by over the steps that its level remembers.
     pub(crate) const FIRST_ACCELERATION: f64 = 3.0;
     /// Share of the variance of an expected pose that what has changed to a hypothesis may add to it: more is kept apart until a frame has been seen. A
