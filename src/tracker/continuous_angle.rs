@@ -115,12 +115,16 @@ impl ContinuousAngle {
     /// velocity says afterwards what it has made of the time.
     pub fn leave_out(&mut self, time: f64) {
         if let Some(before) = self.left_out.or(self.last.map(|last| last.time)) {
-            let seconds = time - before;
-            self.step = Some(self.step.map_or(seconds, |step| step.min(seconds)));
+            self.shortest_step(time - before);
         }
         // The angle is 0 in the first frame, a step before the first pose.
         self.last.get_or_insert(LastPose { time, angle: 0.0 });
         self.left_out = Some(time);
+    }
+
+    /// The shortest step between poses, after one of so many seconds.
+    fn shortest_step(&mut self, seconds: f64) -> f64 {
+        *self.step.insert(self.step.map_or(seconds, |step| step.min(seconds)))
     }
 
     /// The angle that is expected at a time, none before the first, by the angular velocities before and then; counts the time that poses were
@@ -128,9 +132,7 @@ impl ContinuousAngle {
     fn expect(&mut self, time: f64, omega: Option<Omega>) -> f64 {
         let Some(last) = self.last else { return 0.0 };
         let seconds = time - last.time;
-        let step = self.step.map_or(seconds, |step| step.min(seconds));
-        self.step = Some(step);
-        if seconds > LONGEST_STEP * step || self.left_out.is_some() {
+        if seconds > LONGEST_STEP * self.shortest_step(seconds) || self.left_out.is_some() {
             self.open += seconds;
         }
         let known = [self.omega, omega].into_iter().flatten();

@@ -36,7 +36,7 @@ use freeform_outline_io::OutlineFrame;
 
 use self::{
     identifier::Identifier,
-    object::{ExpectedStates, KnownOutlines, TrackedObject},
+    object::{Extra, Extras, TrackedObject},
 };
 
 #[cfg(feature = "serde")]
@@ -96,7 +96,7 @@ pub struct Tracker {
     unused: Identifier,
     /// Objects whose observations hold what is known of the outline.
     known_outlines_of: usize,
-    expected_states: ExpectedStates,
+    expected_states: Extra,
     objects: Objects,
     #[cfg(feature = "serde")]
     rest: Option<resting::Rest>,
@@ -121,7 +121,7 @@ impl Tracker {
             settings,
             unused,
             known_outlines_of: 0,
-            expected_states: ExpectedStates::LeftOut,
+            expected_states: Extra::LeftOut,
             objects: Objects::default(),
             #[cfg(feature = "serde")]
             rest: None,
@@ -155,7 +155,7 @@ impl Tracker {
     /// From now on observations hold what was expected before each frame ([`Observation::expected`]), which
     /// [`Trajectory::smooth`] needs where the motion of an object changes (motion filter). A frame takes about twice as long.
     pub fn record_expected_states(&mut self) {
-        self.expected_states = ExpectedStates::Given;
+        self.expected_states = Extra::Given;
         self.objects.list.iter_mut().for_each(TrackedObject::record_expected_states);
     }
 
@@ -231,9 +231,8 @@ impl Tracker {
     }
 
     fn new_object(&self, name: &str, position: usize) -> TrackedObject {
-        let known_outline =
-            if position < self.known_outlines_of { KnownOutlines::Given } else { KnownOutlines::LeftOut };
-        let extras = (known_outline, self.expected_states);
+        let known_outline = if position < self.known_outlines_of { Extra::Given } else { Extra::LeftOut };
+        let extras = Extras { known_outline, expected_state: self.expected_states };
         TrackedObject::new(name.to_owned(), self.unused.clone(), &self.settings, extras)
     }
 }

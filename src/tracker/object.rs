@@ -24,8 +24,7 @@ pub(super) struct TrackedObject {
     pub(super) scale: Option<CameraScale>,
     pub(super) rectification: Option<Rectification>,
     pub(super) contour_order: ContourOrder,
-    pub(super) known_outline: KnownOutlines,
-    pub(super) expected_states: ExpectedStates,
+    pub(super) extras: Extras,
     pub(super) frames: usize,
     pub(super) rejected: usize,
     /// The first of them.
@@ -34,36 +33,43 @@ pub(super) struct TrackedObject {
     pub(super) rejected_later: FrameRanges,
 }
 
-/// Whether observations hold what is known of the outline.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum KnownOutlines {
+/// What observations hold beside the results, each at the price of memory and time for every frame.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Extras {
+    /// What is known of the outline.
+    pub(super) known_outline: Extra,
+    /// What was expected of the object, which smoothing needs where its motion changes.
+    pub(super) expected_state: Extra,
+}
+
+/// Whether observations hold something.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum Extra {
     Given,
+    #[default]
     LeftOut,
 }
 
-/// Whether observations hold what was expected of an object, which smoothing needs where its motion changes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum ExpectedStates {
-    Given,
-    LeftOut,
+impl Extra {
+    /// What is worked out only where it is given.
+    fn of<T>(self, value: impl FnOnce() -> Option<T>) -> Option<Box<T>> {
+        match self {
+            Self::Given => value().map(Box::new),
+            Self::LeftOut => None,
+        }
+    }
 }
 
 impl TrackedObject {
     /// A new object without frames.
-    pub(super) fn new(
-        name: String,
-        identifier: Identifier,
-        settings: &TrackerSettings,
-        (known_outline, expected_states): (KnownOutlines, ExpectedStates),
-    ) -> Self {
+    pub(super) fn new(name: String, identifier: Identifier, settings: &TrackerSettings, extras: Extras) -> Self {
         Self {
             name,
             identifier,
             scale: settings.scale,
             rectification: settings.rectification,
             contour_order: ContourOrder::default(),
-            known_outline,
-            expected_states,
+            extras,
             frames: 0,
             rejected: 0,
             rejections: Vec::new(),
@@ -73,7 +79,7 @@ impl TrackedObject {
 
     /// Lets its observations hold what was expected of it.
     pub(super) fn record_expected_states(&mut self) {
-        self.expected_states = ExpectedStates::Given;
+        self.extras.expected_state = Extra::Given;
     }
 
     /// Its name.
@@ -96,10 +102,7 @@ impl TrackedObject {
                 return Observation { time: Some(frame.time), ..unusable };
             }
         };
-        let expected = match self.expected_states {
-            ExpectedStates::Given => self.identifier.expected_state(frame.time).map(Box::new),
-            ExpectedStates::LeftOut => None,
-        };
+        let expected = self.extras.expected_state.of(|| self.identifier.expected_state(frame.time));
         let step = self.identifier.push(frame.time, in_plane.as_ref().unwrap_or(seen));
         let rejection = self.count(frame.frame, step.rejected_because);
         Observation {
@@ -121,10 +124,7 @@ impl TrackedObject {
             ambiguity: step.ambiguity,
             plane_ambiguity: step.plane_ambiguity,
             aliases: step.aliases,
-            known_outline: match self.known_outline {
-                KnownOutlines::Given => self.identifier.known_outline().map(Box::new),
-                KnownOutlines::LeftOut => None,
-            },
+            known_outline: self.extras.known_outline.of(|| self.identifier.known_outline()),
             rejection,
             segment: self.identifier.segment(),
             warning: self.contour_order.look_at(frame).cloned(),

@@ -12,7 +12,7 @@ use super::{
     contour_order::{ContourOrder, FRAMES},
     filtered_object::FilteredObject,
     identifier::Identifier,
-    object::{ExpectedStates, KnownOutlines, REJECTIONS_KEPT, TrackedObject},
+    object::{Extras, REJECTIONS_KEPT, TrackedObject},
     settings::{MethodSettings, TrackerSettings},
 };
 use crate::frame_ranges::FrameRanges;
@@ -237,8 +237,7 @@ fn restored(saved: SavedObject, settings: &TrackerSettings) -> Result<TrackedObj
         scale: settings.scale,
         rectification: settings.rectification,
         contour_order: ContourOrder { seen: frames_looked_at, warning },
-        known_outline: KnownOutlines::LeftOut,
-        expected_states: ExpectedStates::LeftOut,
+        extras: Extras::default(),
         frames,
         rejected,
         rejections: rejections.collect(),

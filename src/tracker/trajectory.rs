@@ -261,14 +261,13 @@ fn smooth_object(rows: &mut [&mut TrajectoryRow], smoother: Smoother) -> Result<
     let (mut start, mut smoothed) = (0, Vec::new());
     for run in followed.chunk_by(|a, b| a == b) {
         if run[0].0 {
-            let known = || rows[start..start + run.len()].iter().filter(|row| row.state().is_some());
-            let filtered: Vec<MotionState> = known().filter_map(|row| row.state().cloned()).collect();
+            let known = rows[start..start + run.len()]
+                .iter()
+                .filter_map(|row| Some((row.state()?.clone(), row.expected.as_deref())));
+            let (filtered, expected): (Vec<MotionState>, Vec<_>) = known.unzip();
             let states = match &smoother {
                 Smoother::ConstantMotion(noise) => smooth(&filtered, noise)?,
-                Smoother::ByExpectation => {
-                    let expected: Vec<_> = known().map(|row| row.expected.as_deref().cloned()).collect();
-                    smooth_changing(&filtered, &expected)?
-                }
+                Smoother::ByExpectation => smooth_changing(&filtered, &expected)?,
             };
             smoothed.push((start, run.len(), states));
         }

@@ -1,12 +1,12 @@
 //! Smoothing of a motion that changes from frame to frame.
-use freeform_riccati::{MotionModel, logarithm};
-use nalgebra::{DMatrix, DVector, Matrix3};
+use freeform_riccati::MotionModel;
+use nalgebra::{DMatrix, Matrix3};
 
 use crate::{
     expected_derivative::derivative,
     information::scaled_inverse,
     motion_state::MotionState,
-    smoother::{SmootherError, check},
+    smoother::{SmootherError, difference, from_the_last_back},
 };
 
 /// What was expected of an object before a frame was looked at, from the frames before it.
@@ -56,7 +56,7 @@ const ANOTHER_MOTION: [(usize, f64); 4] = [(3, 21.1), (4, 23.5), (6, 27.9), (8, 
 /// // The second frame tells more than the first; the motion may have changed in between by 0.1 rad/s.
 /// let states = [state(0.1, 1.45, 1e-2).into(), state(0.2, 1.5, 1e-4).into()];
 /// let expected = ExpectedState { state: state(0.2, 1.45, 2e-2).into(), turning_velocity: 1.0 };
-/// let smoothed = smooth_changing(&states, &[None, Some(expected)])?;
+/// let smoothed = smooth_changing(&states, &[None, Some(&expected)])?;
 /// let omega = smoothed[0].motion().values()[0];
 /// assert!(omega > 1.46 && omega < 1.49);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -66,27 +66,18 @@ const ANOTHER_MOTION: [(usize, f64); 4] = [(3, 21.1), (4, 23.5), (6, 27.9), (8, 
 /// As [`smooth`](crate::smooth).
 pub fn smooth_changing(
     states: &[MotionState],
-    expected: &[Option<ExpectedState>],
+    expected: &[Option<&ExpectedState>],
 ) -> Result<Vec<MotionState>, SmootherError> {
-    check(states)?;
-    let mut smoothed = states.to_vec();
-    for t in (1..states.len()).rev() {
-        let (before, after) = smoothed.split_at_mut(t);
-        let expected = expected.get(t).and_then(Option::as_ref);
-        if let (Some(state), Some(next), Some(expected)) = (before.last_mut(), after.first(), expected)
-            && is_as_expected(&states[t], &expected.state)
-            && let Some(better) = taken_back(state, next, expected)
-        {
-            *state = better;
-        }
-    }
-    Ok(smoothed)
+    from_the_last_back(states, |t, state, next| {
+        let expected = expected.get(t + 1).copied().flatten()?;
+        is_as_expected(&states[t + 1], &expected.state).then(|| taken_back(state, next, expected)).flatten()
+    })
 }
 
 /// Whether a state is of the motion that was expected, and known as well at least: by how much a frame has moved the pose, in deviations of what a
 /// frame moves it by.
 fn is_as_expected(found: &MotionState, expected: &MotionState) -> bool {
-    let Some(difference) = difference(found, expected) else { return false };
+    let Some(difference) = difference((&found.pose, &found.motion), expected) else { return false };
     let k = found.model.parameter_count();
     let Some((_, limit)) = ANOTHER_MOTION.into_iter().find(|(parameters, _)| *parameters == k) else { return false };
     let of_pose = difference.rows(0, k);
@@ -107,14 +98,6 @@ const ROUNDED: f64 = 1.0 + 1e-9;
 /// No number of a state is corrected by more than this many deviations: what says so is of another motion. One in ten thousand is by chance.
 const LARGEST_CORRECTION: f64 = 3.9;
 
-/// By how much a state lies off another: the pose on the group, on the left, then the motion.
-fn difference(state: &MotionState, from: &MotionState) -> Option<DVector<f64>> {
-    let k = state.model.parameter_count();
-    let pose = logarithm(&(state.pose * from.pose.try_inverse()?))?;
-    let pose = state.model.parameters_of(&pose);
-    Some(DVector::from_fn(2 * k, |i, _| if i < k { pose[i] } else { state.motion[i - k] - from.motion[i - k] }))
-}
-
 /// A filtered state corrected by the smoothed one after it; `None` where numbers do not allow it.
 fn taken_back(state: &MotionState, next: &MotionState, expected: &ExpectedState) -> Option<MotionState> {
     let k = state.model.parameter_count();
@@ -124,7 +107,7 @@ fn taken_back(state: &MotionState, next: &MotionState, expected: &ExpectedState)
     // Hypotheses of dynamics may have expected the state better than what is known of the one before tells: nothing has been added then.
     let added = without_negative(&expected.state.within, &(&expected.state.within - &moved))?;
     let gain = &state.within * derivative.transpose() * scaled_inverse(&(moved + &added))?;
-    let correction = &gain * difference(next, &expected.state)?;
+    let correction = &gain * difference((&next.pose, &next.motion), &expected.state)?;
     let kept = DMatrix::identity(2 * k, 2 * k) - &gain * &derivative;
     let within = by(&kept, &state.within) + by(&gain, &(added + &next.within));
     let is_likely = |i: usize| correction[i].abs() <= LARGEST_CORRECTION * state.within[(i, i)].max(0.0).sqrt();
@@ -174,8 +157,8 @@ fn adjoint(model: MotionModel, map: &Matrix3<f64>) -> Option<DMatrix<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use freeform_riccati::ParameterVector;
-    use nalgebra::Point2;
+    use freeform_riccati::{ParameterVector, logarithm};
+    use nalgebra::{DVector, Point2};
 
     use super::*;
     use crate::{
@@ -265,6 +248,11 @@ mod tests {
         (motions, states, expectations)
     }
 
+    fn smoothed_by(states: &[MotionState], expected: &[Option<ExpectedState>]) -> Vec<MotionState> {
+        let expected: Vec<_> = expected.iter().map(Option::as_ref).collect();
+        smooth_changing(states, &expected).expect("a run")
+    }
+
     /// Mean squares of the errors of omega, and of these in their deviations.
     fn squares(states: &[MotionState], motions: &[ParameterVector]) -> [f64; 2] {
         let mut sums = [0.0; 2];
@@ -279,10 +267,10 @@ mod tests {
     #[test]
     fn a_constant_generator_is_smoothed_as_by_the_smoother_of_constant_motions() {
         let (_, states, expected) = followed(12, true, 0.0, None, 1);
-        let by_expectation = smooth_changing(&states, &expected).expect("a run");
+        let by_expectation = smoothed_by(&states, &expected);
         let all_at_once = smooth(&states, &ProcessNoise::default()).expect("a run");
         for (one, other) in by_expectation.iter().zip(&all_at_once).skip(4) {
-            let off = difference(one, other).expect("near");
+            let off = difference((&one.pose, &one.motion), other).expect("near");
             let in_deviations = (0..6).map(|i| off[i].abs() / other.covariance[(i, i)].sqrt()).fold(0.0, f64::max);
             assert!(in_deviations < 0.1, "{in_deviations}");
             let variances = |state: &MotionState| state.covariance.diagonal();
@@ -296,7 +284,7 @@ mod tests {
             let [mut before, mut after, mut standardised] = [0.0; 3];
             for seed in 1..=8 {
                 let (motions, states, expected) = followed(50, turning, 0.05, None, seed);
-                let smoothed = smooth_changing(&states, &expected).expect("a run");
+                let smoothed = smoothed_by(&states, &expected);
                 let [[error, _], [error_after, in_deviations]] = [&states, &smoothed].map(|of| squares(of, &motions));
                 (before, after, standardised) =
                     (before + error, after + error_after, standardised + in_deviations / 8.0);
@@ -310,7 +298,7 @@ mod tests {
     #[test]
     fn nothing_is_handed_back_over_a_sudden_change() {
         let (motions, states, expected) = followed(60, true, 0.002, Some(30), 1);
-        let smoothed = smooth_changing(&states, &expected).expect("a run");
+        let smoothed = smoothed_by(&states, &expected);
         for frame in 10..30 {
             let off = (smoothed[frame].motion[0] - motions[frame][0]).abs();
             assert!(off < 5.0 * smoothed[frame].covariance[(3, 3)].sqrt(), "frame {frame}: {off}");
@@ -328,7 +316,7 @@ mod tests {
         let off = |state: &MotionState| MotionState { covariance: &state.covariance + &common, ..state.clone() };
         let states: Vec<MotionState> = states.iter().map(off).collect();
         expected.iter_mut().flatten().for_each(|expected| expected.state = off(&expected.state));
-        let smoothed = smooth_changing(&states, &expected).expect("a run");
+        let smoothed = smoothed_by(&states, &expected);
         for (state, before) in smoothed.iter().zip(&states).take(39) {
             assert!((0..6).all(|i| state.covariance[(i, i)] > common[(i, i)]));
             assert!(
@@ -351,7 +339,7 @@ mod tests {
         };
         let states: Vec<MotionState> = states.iter().map(of).collect();
         expected.iter_mut().flatten().for_each(|expected| expected.state = of(&expected.state));
-        for (state, before) in smooth_changing(&states, &expected).expect("a run").iter().zip(&states) {
+        for (state, before) in smoothed_by(&states, &expected).iter().zip(&states) {
             assert_eq!(state.motion[0], before.motion[0]);
             assert!(state.covariance.iter().all(|entry| entry.is_finite()));
         }
@@ -362,7 +350,7 @@ mod tests {
         let (_, mut states, expected) = followed(30, true, 0.002, None, 1);
         let before: Vec<f64> = states.iter().take(15).map(|state| state.motion[0]).collect();
         states.iter_mut().skip(15).for_each(|state| state.motion[0] += std::f64::consts::TAU / STEP);
-        let smoothed = smooth_changing(&states, &expected).expect("a run");
+        let smoothed = smoothed_by(&states, &expected);
         for (state, before) in smoothed.iter().zip(before) {
             assert!((state.motion[0] - before).abs() < 0.5, "{} {before}", state.motion[0]);
         }

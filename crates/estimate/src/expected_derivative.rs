@@ -54,9 +54,8 @@ pub(crate) fn straight(
     let k = model.parameter_count();
     let generator = model.generator(&motion[..k]);
     let linear = |m: &Matrix3<f64>| m.fixed_view::<2, 2>(0, 0).into_owned();
-    let part = |m: &Matrix3<f64>| m.fixed_view::<2, 1>(0, 2).into_owned();
-    let here = linear(pose) * centroid.coords + part(pose);
-    let velocity = linear(&generator) * here + part(&generator);
+    let here = (pose * centroid.to_homogeneous()).xy();
+    let velocity = (generator * here.push(1.0)).xy();
     let there = here + seconds * velocity;
     let turned = model.linear_flow(&motion[..k], seconds) * linear(pose);
     let mut later = Matrix3::identity();

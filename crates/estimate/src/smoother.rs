@@ -1,5 +1,5 @@
-use freeform_riccati::{MAX_PARAMETERS, logarithm};
-use nalgebra::DVector;
+use freeform_riccati::{ParameterVector, logarithm};
+use nalgebra::{DVector, Matrix3};
 
 use crate::{
     information::scaled_inverse,
@@ -68,19 +68,15 @@ pub enum SmootherError {
 /// Times that do not increase; states of different runs. A run ends where the filter finds the object anew: its states before and after
 /// that are smoothed apart.
 pub fn smooth(states: &[MotionState], noise: &ProcessNoise) -> Result<Vec<MotionState>, SmootherError> {
-    check(states)?;
-    let mut smoothed = states.to_vec();
-    for t in (1..states.len()).rev() {
-        let (before, after) = smoothed.split_at_mut(t);
-        if let (Some(state), Some(next)) = (before.last_mut(), after.first()) {
-            take_back(state, next, noise);
-        }
-    }
-    Ok(smoothed)
+    from_the_last_back(states, |_, state, next| taken_back(state, next, noise))
 }
 
-/// Whether states are those of one run, in the order of their times.
-pub(crate) fn check(states: &[MotionState]) -> Result<(), SmootherError> {
+/// States of one run smoothed one after the other, the last first: each, at its position, becomes what is made of it and of the smoothed one after it,
+/// and stays as it was filtered where that is `None`.
+pub(crate) fn from_the_last_back(
+    states: &[MotionState],
+    better: impl Fn(usize, &MotionState, &MotionState) -> Option<MotionState>,
+) -> Result<Vec<MotionState>, SmootherError> {
     for (i, pair) in states.windows(2).enumerate() {
         let [a, b] = pair else { continue };
         let index = i + 1;
@@ -91,47 +87,51 @@ pub(crate) fn check(states: &[MotionState]) -> Result<(), SmootherError> {
             return Err(SmootherError::AnotherRun { index });
         }
     }
-    Ok(())
+    let mut smoothed = states.to_vec();
+    for t in (1..states.len()).rev() {
+        if let Some(state) = better(t - 1, &smoothed[t - 1], &smoothed[t]) {
+            smoothed[t - 1] = state;
+        }
+    }
+    Ok(smoothed)
 }
 
-/// Corrects a filtered state by the smoothed one after it. Where numbers do not allow it the state stays as it was filtered.
-fn take_back(state: &mut MotionState, next: &MotionState, process_noise: &ProcessNoise) {
+/// By how much a pose and a motion lie off a state: the pose on the group, on the left, then the motion.
+pub(crate) fn difference(
+    (pose, motion): (&Matrix3<f64>, &ParameterVector),
+    state: &MotionState,
+) -> Option<DVector<f64>> {
+    let k = state.model.parameter_count();
+    let of_pose = state.model.parameters_of(&logarithm(&(pose * state.pose.try_inverse()?))?);
+    Some(DVector::from_fn(2 * k, |i, _| if i < k { of_pose[i] } else { motion[i - k] - state.motion[i - k] }))
+}
+
+/// A filtered state corrected by the smoothed one after it; `None` where numbers do not allow it.
+fn taken_back(state: &MotionState, next: &MotionState, process_noise: &ProcessNoise) -> Option<MotionState> {
     let k = state.model.parameter_count();
     // Linearised at the smoothed motion, so that without process noise the path is met exactly.
     let Transition { flow, matrix, inverse: back, noise } = next.transition(next.time - state.time, process_noise);
-    let Some(pose) = flow.try_inverse().map(|inverse| inverse * next.pose) else { return };
+    let pose = flow.try_inverse()? * next.pose;
     let mut gain = back.clone();
     let mut correction = DVector::zeros(2 * k);
     if noise.iter().any(|q| *q > 0.0) {
         let within = &matrix * &state.within * matrix.transpose() + &noise;
-        let Some(information) = scaled_inverse(&within) else { return };
-        let drifted = &back * &noise * information;
+        let drifted = &back * &noise * scaled_inverse(&within)?;
         gain -= &drifted;
-        let Some(difference) = state.pose.try_inverse().and_then(|inverse| logarithm(&(pose * inverse))) else {
-            return;
-        };
-        let difference = state.model.parameters_of(&difference);
-        let difference =
-            DVector::from_fn(
-                2 * k,
-                |i, _| {
-                    if i < k { difference[i] } else { next.motion[i - k] - state.motion[i - k] }
-                },
-            );
-        correction = -(drifted * &matrix * difference);
+        correction = -(drifted * &matrix * difference((&pose, &next.motion), state)?);
     }
     let predicted = &matrix * &state.covariance * matrix.transpose() + &noise;
     let covariance = &state.covariance + &gain * (&next.covariance - predicted) * gain.transpose();
     if !(correction.iter().all(|e| e.is_finite()) && covariance.iter().all(|e| e.is_finite())) {
-        return;
+        return None;
     }
-    state.pose = state.model.flow(&correction.as_slice()[..k], 1.0).into_inner() * pose;
-    (0..k).for_each(|j| state.motion[j] = next.motion[j] + correction[k + j]);
-    state.covariance = 0.5 * (&covariance + covariance.transpose());
+    let mut better = state.clone();
+    better.pose = state.model.flow(&correction.as_slice()[..k], 1.0).into_inner() * pose;
+    (0..k).for_each(|j| better.motion[j] = next.motion[j] + correction[k + j]);
+    better.covariance = 0.5 * (&covariance + covariance.transpose());
     // One error that all poses have in common: the last state says it, as what it knows of the outline is no part of it any more.
     let carried = back.view((0, 0), (k, k));
-    state.body_frame = carried * &next.body_frame * carried.transpose();
-    for j in 0..MAX_PARAMETERS {
-        state.observable[j] |= next.observable[j];
-    }
+    better.body_frame = carried * &next.body_frame * carried.transpose();
+    better.observable.iter_mut().zip(next.observable).for_each(|(seen, later)| *seen |= later);
+    Some(better)
 }

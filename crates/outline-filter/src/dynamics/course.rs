@@ -192,9 +192,9 @@ impl Course {
         self.level().map_or(f64::INFINITY, |level| (tuning::MEMORY * level.powf(-1.0 / 6.0)).max(1.0))
     }
 
-    /// Whether it remembers only a few steps.
+    /// Whether its [memory](Self::memory) is of less than a few steps; asked of all in every frame, and so without a root.
     pub(super) fn is_forgetful(self) -> bool {
-        self.memory() < tuning::REMEMBERED
+        self.level().is_some_and(|level| level > (tuning::MEMORY / tuning::REMEMBERED).powi(6))
     }
 
     /// What its rates do. Those of a steady change have no random part.
@@ -215,6 +215,18 @@ impl Course {
         match self.rates() {
             Rates::ChangeAtRandom => 0,
             Rates::Stay => k - 2,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn those_are_forgetful_whose_memory_is_of_less_than_a_few_steps() {
+        for course in Course::all_of(Dynamics::Auto) {
+            assert_eq!(course.is_forgetful(), course.memory() < tuning::REMEMBERED, "{course:?}");
         }
     }
 }

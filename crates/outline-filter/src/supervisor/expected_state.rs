@@ -1,10 +1,7 @@
 //! What is expected of the object at the time of a frame that has not been looked at.
 use freeform_estimate::ExpectedState;
 
-use super::{
-    motion_filter::{MotionFilter, Phase},
-    tracking::predict,
-};
+use super::motion_filter::{MotionFilter, Phase};
 
 impl MotionFilter {
     /// Pose and motion as they are expected at a later time, in seconds, from the frames so far: what a smoother compares the
@@ -14,18 +11,14 @@ impl MotionFilter {
     pub fn expected_state(&self, time: f64) -> Option<ExpectedState> {
         let time = time / self.seconds_per_unit();
         // After a gap nobody knows by how many whole turns.
-        if self.phase != Phase::Tracking || self.has_gone_unseen(time) {
+        if self.phase != Phase::Tracking || self.has_gone_unseen(time) || time <= self.clock.of_track {
             return None;
         }
-        let seconds = time - self.clock.of_track;
         let mut ahead = self.clone();
         ahead.stated.take();
-        let track = ahead.track.as_mut().filter(|_| seconds > 0.0)?;
-        if !predict(&self.settings, track, &mut ahead.history, seconds) {
+        if !ahead.move_on(time) {
             return None;
         }
-        ahead.history.end_step();
-        ahead.clock.of_track = time;
         // Hypotheses that do not lead yet leave the prediction to a constant generator.
         let leading = ahead.history.dynamics.as_ref().filter(|dynamics| dynamics.leads());
         let turning_velocity = leading.map_or(1.0, |dynamics| dynamics.weights().generator);

@@ -16,17 +16,25 @@ impl MotionFilter {
     /// Moves on to the time of a frame that repeats the one before it.
     pub(super) fn pass_over(&mut self, time: f64) {
         self.clock.last_frame = time;
-        let Some(track) = self.track.as_mut().filter(|_| self.phase == Phase::Tracking) else { return };
+        let Some(track) = self.track.as_ref().filter(|_| self.phase == Phase::Tracking) else { return };
         if self.before_repeated.is_none() {
             let (track, history) = (track.clone(), self.history.clone());
             self.before_repeated = Some(Box::new(BeforeRepeated { track, history, time: self.clock.of_track }));
         }
-        if predict(&self.settings, track, &mut self.history, time - self.clock.of_track) {
-            self.clock.of_track = time;
-            self.history.end_step();
-        } else {
+        if !self.move_on(time) {
             self.phase = Phase::Lost;
         }
+    }
+
+    /// Moves the track on to a time whose frame is not measured; whether it can be predicted.
+    pub(super) fn move_on(&mut self, time: f64) -> bool {
+        let Some(track) = self.track.as_mut() else { return false };
+        let is_predicted = predict(&self.settings, track, &mut self.history, time - self.clock.of_track);
+        if is_predicted {
+            self.clock.of_track = time;
+            self.history.end_step();
+        }
+        is_predicted
     }
 
     /// Goes back to the last frame that was looked at.
