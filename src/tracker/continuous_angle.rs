@@ -146,8 +146,8 @@ impl ContinuousAngle {
             _ if self.open == 0.0 => 0.0,
             (Some(before), Some(now)) => now.spread(before, self.open),
             // It may have stopped, or be twice as fast.
-            (Some(before), None) => before.value.hypot(before.deviation) * self.open,
-            (None, _) => TAU,
+            (Some(only), None) | (None, Some(only)) => only.value.hypot(only.deviation) * self.open,
+            (None, None) => TAU,
         };
         // Two deviations of it reach half a turn, from where on another whole turn is nearer.
         if spread > FRAC_PI_2 { spread } else { 0.0 }
@@ -246,6 +246,11 @@ mod tests {
         let turned = 287.0 * 0.034;
         let (angle, deviation) = next(&mut angles, &state(0.034, 287.0, 0.5), turned - TAU * (turned / TAU).round());
         assert!((angle - turned).abs() < 1e-9 && deviation > PI, "{angle} {deviation}");
+        // Slow ones leave no whole turns open.
+        let mut angles = ContinuousAngle::default();
+        (1..5).for_each(|frame| angles.leave_out(0.03 * f64::from(frame)));
+        let (angle, deviation) = next(&mut angles, &state(0.15, 5.0, 0.01), 0.75);
+        assert!((angle - 0.75).abs() < 1e-9 && deviation == 0.0, "{angle} {deviation}");
         // Where the turn was known before, it tells as well.
         let mut angles = ContinuousAngle::default();
         let known = |frame: u32| f64::from(frame) * 0.1;

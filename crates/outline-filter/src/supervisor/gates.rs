@@ -52,12 +52,12 @@ pub(super) enum Turns {
 }
 
 impl Turns {
-    /// Whether one that is found by a search that turns the object by so much, rad, is the one that was expected.
-    pub(super) fn is_expected(self, turn: f64) -> bool {
+    /// As far as a search may turn an object that is then still the one that was expected, rad; none where no search tells it.
+    pub(super) fn farthest_expected(self) -> Option<f64> {
         match self {
-            Self::One => true,
-            Self::Symmetric { order } => turn.abs() < NEARBY * TAU / order as f64,
-            Self::Several => false,
+            Self::One => Some(f64::INFINITY),
+            Self::Symmetric { order } => Some(NEARBY * TAU / order as f64),
+            Self::Several => None,
         }
     }
 }

@@ -103,11 +103,11 @@ fn outcome_with_changes(
         change.was_sudden = true;
         outcome = found;
     }
-    let gate = gates.nearby.filter(|_| turns != Turns::Several && !outcome.is_accepted());
-    let apart = (gate.is_some() || may_be_apart(&outcome)).then(|| displacement_nearby(track, frame)).flatten();
-    if let Some((gate, apart)) = gate.zip(apart) {
+    let nearby = gates.nearby.zip(turns.farthest_expected()).filter(|_| !outcome.is_accepted());
+    let apart = (nearby.is_some() || may_be_apart(&outcome)).then(|| displacement_nearby(track, frame)).flatten();
+    if let Some(((gate, farthest_turn), apart)) = nearby.zip(apart) {
         let dynamics = dynamics.as_mut();
-        let found = (turns, (apart, since_taken));
+        let found = (farthest_turn, (apart, since_taken));
         if let Some(found) = outcome_nearby((track, frame), dynamics, found, (&gate, comparison)) {
             change.was_sudden = true;
             outcome = found;
@@ -187,7 +187,7 @@ fn apart_by(
 
 /// Whether a frame may show the outline elsewhere than it was expected: the sides of a bar that has moved along itself may still lie on it, and its
 /// ends look like noise.
-fn may_be_apart(outcome: &Outcome) -> bool {
+pub(super) fn may_be_apart(outcome: &Outcome) -> bool {
     use Rejection::{AgreementTooSmall, NoiseTooLarge, NotFound};
     matches!(outcome.verdict, Err(AgreementTooSmall { .. } | NoiseTooLarge { .. } | NotFound))
 }
@@ -213,17 +213,18 @@ pub(super) fn after_sudden_change(
 }
 
 /// What becomes of a frame that shows the object so far from where it was expected that linearisations do not lead there, but where a search from
-/// there has found it, which the motion has made of it in so many seconds; `None`, with nothing changed, where it is not accepted there either.
-fn outcome_nearby(
+/// there has found it, turned by no more than so much, which the motion has made of it in so many seconds; `None`, with nothing changed, where it is not
+/// accepted there either.
+pub(super) fn outcome_nearby(
     (track, frame): (&mut Track, &mut Frame),
     dynamics: Option<&mut DynamicsFilter>,
-    (turns, (apart, seconds)): (Turns, (PoseVector, f64)),
+    (farthest_turn, (apart, seconds)): (f64, (PoseVector, f64)),
     (gate, comparison): (&Gate, Comparison),
 ) -> Option<Outcome> {
     let mut displaced = track.clone();
     let is_shown = displaced.displace(&apart, seconds);
     let pose = *displaced.body_pose();
-    if !is_shown || !turns.is_expected(track.turn_to(&pose)) {
+    if !is_shown || track.turn_to(&pose).abs() >= farthest_turn {
         return None;
     }
     let outcome = displaced.update(frame, gate, comparison);

@@ -1,4 +1,6 @@
 //! Hypotheses of the turn: turns that explain the frames as well as the one taken, followed until a frame decides.
+use std::f64::consts::PI;
+
 use freeform_estimate::MotionEstimate;
 use freeform_riccati::MAX_PARAMETERS;
 
@@ -11,7 +13,10 @@ use super::{
 use crate::{
     measurement::{Frame, NegativeLogLikelihood},
     track::{Comparison, Outcome, Track, wrapped},
-    tuning::{symmetry::OFF_MULTIPLE, turn_hypotheses as tuning},
+    tuning::{
+        symmetry::{NEARBY, OFF_MULTIPLE},
+        turn_hypotheses as tuning,
+    },
 };
 #[cfg(feature = "serde")]
 use freeform_estimate::StateFormat;
@@ -171,7 +176,21 @@ impl TurnHypotheses {
     }
 
     fn is_doubtful(&self, index: usize) -> bool {
-        self.rivals[index].is_shown || is_doubtful(self.rival_turns[index], self.present_turn)
+        self.rivals[index].is_shown
+            || is_doubtful(self.rival_turns[index], self.present_turn)
+            || self.is_preferred(index)
+    }
+
+    /// Whether the first frames speak for a rival, though not beyond doubt, and the next ones will tell: a nut with a small mark may have turned by two
+    /// of its sides and a little, or by that little.
+    fn is_preferred(&self, index: usize) -> bool {
+        let TurnHypothesis { track, likelihood, reason, .. } = &self.rivals[index];
+        let of = |likelihood: NegativeLogLikelihood| match reason {
+            Reason::Likeness => likelihood,
+            Reason::Symmetry => likelihood.of_points(),
+        };
+        let is_told_soon = track.is_some() && self.frames < tuning::FOLLOWED;
+        is_told_soon && of(self.likelihood).is_worse_by(tuning::PREFERRED, &of(*likelihood))
     }
 
     /// The parameters in which the motion of a doubtful hypothesis differs from an estimate.
@@ -217,8 +236,9 @@ impl TurnHypotheses {
             self.compare_intervals(seconds);
         }
         for index in (0..self.rivals.len()).rev() {
+            let farthest_turn = NEARBY * self.apart_from_others(index);
             let rival = &mut self.rivals[index];
-            let Some(found) = rival.follow(settings, (track, frame), &outcome, seconds) else {
+            let Some(found) = rival.follow(settings, (track, frame), &outcome, (seconds, farthest_turn)) else {
                 // One that cannot be predicted is no way in which the object may have turned.
                 if rival.track.is_some() {
                     self.rule_out(index);
@@ -278,6 +298,13 @@ impl TurnHypotheses {
         }
         self.follow_no_longer_than_needed();
         outcome
+    }
+
+    /// The smallest angle between poses that a rival and any other hypothesis lead to, rad.
+    fn apart_from_others(&self, index: usize) -> f64 {
+        let others = self.rival_turns.iter().enumerate().filter(|(other, _)| *other != index).map(|(_, turn)| turn);
+        let apart = others.chain([&self.present_turn]).map(|turn| wrapped(turn - self.rival_turns[index]).abs());
+        apart.fold(PI, f64::min)
     }
 
     /// Makes a rival the present track, and that the rival.

@@ -1,11 +1,12 @@
 //! One other way in which the object may have turned.
 use super::{
-    gates::{gate, largest_innovation},
+    gates::{gate, gate_of_all, largest_innovation},
     settings::FilterSettings,
-    tracking::after_sudden_change,
+    tracking::{after_sudden_change, may_be_apart, outcome_nearby},
 };
 use crate::{
     measurement::{Frame, NegativeLogLikelihood},
+    search::displacement_nearby,
     track::{Comparison, Outcome, Track},
     update::{Gate, Rejection},
 };
@@ -41,13 +42,14 @@ impl TurnHypothesis {
         Self { track, likelihood, likelihood_before: likelihood, reason, is_shown: false }
     }
 
-    /// Measures the loaded frame, of which `outcome` was found with the present track, where it is still followed and can be predicted.
+    /// Measures the loaded frame, of which `outcome` was found with the present track, where it is still followed and can be predicted. Where it was
+    /// expected badly it is searched for, turned by no more than would still be this turn.
     pub(super) fn follow(
         &mut self,
         settings: &FilterSettings,
         (present, frame): (&Track, &mut Frame),
         outcome: &Outcome,
-        seconds: f64,
+        (seconds, farthest_turn): (f64, f64),
     ) -> Option<Outcome> {
         let track = self.track.as_mut()?;
         if !track.predict(seconds) {
@@ -67,6 +69,16 @@ impl TurnHypothesis {
                 after_sudden_change(track, frame, &found, &gate(settings, track).without_noise(), Comparison::Asked)
         {
             (*track, found) = (changed, outcome);
+        }
+        // A fast spin and a straight path make no constant generator, and the rival has no hypotheses of dynamics.
+        if settings.finds_changes()
+            && outcome.is_accepted()
+            && may_be_apart(&found)
+            && let Some(apart) = displacement_nearby(track, frame)
+        {
+            let gate = gate_of_all(settings, track).without_noise();
+            let apart = (farthest_turn, (apart, seconds));
+            found = outcome_nearby((track, frame), None, apart, (&gate, Comparison::Asked)).unwrap_or(found);
         }
         track.record_spread(&found.measurement);
         self.likelihood_before = self.likelihood;

@@ -209,6 +209,9 @@ pub(crate) mod turn_hypotheses {
     pub(crate) const SURELY_SMALLER: f64 = 2.0;
     /// Frames after which hypotheses that are surely larger turns are no longer followed: a symmetric outline will not tell them apart.
     pub(crate) const FOLLOWED: usize = 8;
+    /// Deviations by which a hypothesis that is followed must explain the first frames better than the turn taken, for that to be in doubt until they
+    /// decide: chance makes one of 44 better by as much.
+    pub(crate) const PREFERRED: f64 = 2.0;
     /// Deviations by which the points of so many frames must be better for another of the turns that had looked the same: cells err alike in all of
     /// the first frames, so that those of a square differ by up to six.
     pub(crate) const NOT_THE_SAME: f64 = 10.0;
