@@ -47,8 +47,8 @@ fn a_stream_has_the_warnings_of_results_on_standard_error() {
 
 #[test]
 fn the_last_line_of_an_object_that_leaves_a_stream_has_its_warnings() {
-    let named = |name: &str, from: u32| {
-        let rows = sequence("--shape ellipse --seconds 0.3");
+    let named = |name: &str, from: u32, seconds: u32| {
+        let rows = succeed(&format!("simulate --shape ellipse --points 60 --seconds {seconds}"), "");
         let rows = rows.lines().filter(|line| line.starts_with(|first: char| first.is_ascii_digit()));
         rows.map(|row| {
             let cells: Vec<&str> = row.split(',').collect();
@@ -57,7 +57,7 @@ fn the_last_line_of_an_object_that_leaves_a_stream_has_its_warnings() {
         })
         .collect::<String>()
     };
-    let csv = format!("frame,time,object,x,y\n{}{}", named("a", 0), named("b", 5000));
+    let csv = format!("frame,time,object,x,y\n{}{}", named("a", 0, 1), named("b", 30, 35));
     let output = run("track", &csv);
     let closed = stdout(&output).lines().map(json).find(|line| line["phase"] == "closed").expect("a last line");
     assert_eq!(closed["object"], "a");

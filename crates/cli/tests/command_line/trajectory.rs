@@ -77,7 +77,7 @@ fn other_models_have_trajectories_too() {
         let rows = trajectory(options, &csv);
         assert!(rows[0].join(",").contains(&format!("accepted,{pose}")), "{options}: {:?}", rows[0]);
         assert!(
-            rows[15][4..rows[15].len() - 4].iter().all(|field| field.parse::<f64>().is_ok_and(f64::is_finite)),
+            rows[15][4..rows[15].len() - 5].iter().all(|field| field.parse::<f64>().is_ok_and(f64::is_finite)),
             "{options}"
         );
     }
