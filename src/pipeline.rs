@@ -12,8 +12,9 @@ use crate::{
     pipeline_error::PipelineError,
     pipeline_settings::PipelineSettings,
     regular_map::are_coordinates,
+    rejection::are_many_rejected,
     settling::Settling,
-    warning::{MANY_REJECTED, Warning},
+    warning::Warning,
 };
 
 /// Share of ambiguous matches that is worth a warning.
@@ -315,7 +316,7 @@ impl Pipeline {
             warnings.push(Warning::RotationNotObservable { parameters: unobservable });
         }
         let (rejected, frames) = (self.frames_rejected, self.frames);
-        if rejected as f64 > MANY_REJECTED * frames as f64 {
+        if are_many_rejected(rejected, frames) {
             warnings.push(Warning::FramesRejected { rejected, frames });
         }
         let intervals = self.identifier.frames().saturating_sub(1);

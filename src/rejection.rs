@@ -2,7 +2,18 @@ use std::fmt;
 
 use freeform_outline_filter::{FilterError, Rejection};
 
-use crate::{error_chain::with_causes, pipeline_error::PipelineError, rectification::RectifyError};
+use crate::{error_chain::with_causes, number::short, pipeline_error::PipelineError, rectification::RectifyError};
+
+/// Share of rejected frames from which on there is a warning: less happens where a motion changes or something passes by.
+const MANY_REJECTED: f64 = 0.1;
+
+/// Fewest rejected frames of which there is a warning: of a short sequence one or two are a large share.
+const FEWEST_REJECTED: usize = 3;
+
+/// Whether so many frames were rejected that this questions the result.
+pub(crate) fn are_many_rejected(rejected: usize, frames: usize) -> bool {
+    rejected >= FEWEST_REJECTED && rejected as f64 >= MANY_REJECTED * frames as f64
+}
 
 /// Why a frame of an object was not used.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,4 +73,41 @@ pub(crate) fn write_state_lost(f: &mut fmt::Formatter<'_>, reason: &str) -> fmt:
         f,
         "what was known of the object could not be read back from the temporary file that it was kept in: {reason}"
     )
+}
+
+pub(crate) fn write_too_many_rejected(f: &mut fmt::Formatter<'_>, rejected: usize, frames: usize) -> fmt::Result {
+    write!(
+        f,
+        "{rejected} of {frames} frames do not fit the others, so that no motion is stated: the outlines may be of \
+         several things, or turn by about half a turn (of their symmetry) from frame to frame"
+    )
+}
+
+pub(crate) fn write_frames_rejected(f: &mut fmt::Formatter<'_>, rejected: usize, frames: usize) -> fmt::Result {
+    write!(
+        f,
+        "{rejected} of {frames} frames rejected, more than the few that are normal: the outlines may not be those of the object, or its motion \
+         may not be of the chosen kind"
+    )
+}
+
+pub(crate) fn write_repeated_frames(f: &mut fmt::Formatter<'_>, every: u64, rate: f64) -> fmt::Result {
+    let shown = rate * every.saturating_sub(1) as f64 / every as f64;
+    let [shown, rate] = [shown, rate].map(|rate| short((1e2 * rate).round() / 1e2));
+    write!(
+        f,
+        "one frame in {every} repeats the one before it: the video was probably converted from {shown} to {rate} frames a second, so that its times \
+         are not those of exposure; take the original, or leave the repeated frames out (ffmpeg -vf decimate={every})"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tenth_of_the_frames_is_many_and_two_frames_are_few() {
+        assert!(are_many_rejected(3, 30) && are_many_rejected(3, 3));
+        assert!(!are_many_rejected(3, 31) && !are_many_rejected(2, 2) && !are_many_rejected(0, 0));
+    }
 }

@@ -6,12 +6,13 @@ use freeform_riccati::MotionModel;
 use crate::{
     frame_ranges::FrameRanges,
     number::{of_time, significant},
-    rejection::{FrameRejection, write_state_lost},
+    picture_tracing::{TracedContours, TracedGround},
+    rejection::{
+        FrameRejection, write_frames_rejected, write_repeated_frames, write_state_lost, write_too_many_rejected,
+    },
     standing_edge::write_standing_edge,
+    wrong_family::write_wrong_family,
 };
-
-/// Share of rejected frames from which on there is a warning.
-pub(crate) const MANY_REJECTED: f64 = 0.05;
 
 /// Other angular velocities that are named at most.
 const MOST_ALIASES: usize = 4;
@@ -30,6 +31,8 @@ pub enum Warning {
     NotObservable {
         /// Their names.
         parameters: Vec<&'static str>,
+        /// Which contours were traced: others may show them.
+        contours: TracedContours,
     },
     /// The outlines show these parameters, but they are not known well enough to be stated (motion filter).
     NotKnown {
@@ -62,12 +65,19 @@ pub enum Warning {
         /// Number of restarts.
         times: usize,
     },
-    /// Many frames were not used.
+    /// A considerable share of the frames was not used.
     FramesRejected {
         /// How many.
         rejected: usize,
         /// Out of this many.
         frames: usize,
+    },
+    /// Frames repeat the one before them at regular intervals, as where the rate of a video was raised.
+    RepeatedFrames {
+        /// One in so many does.
+        every: u64,
+        /// Frames per second, with the repeated ones.
+        rate: f64,
     },
     /// Another turn from one frame to the next explains the outlines equally well.
     Ambiguous(Ambiguity),
@@ -101,6 +111,8 @@ pub enum Warning {
         family: WrongFamily,
         /// The model.
         motion: MotionModel,
+        /// How objects were told from the ground, which decides what may help.
+        ground: TracedGround,
     },
     /// A straight part of the outline stood still, or moved slowly, while one rigid motion explained the rest: it is left out.
     StandingEdge(StandingEdge),
@@ -172,10 +184,13 @@ impl Warning {
             | Self::NotKnown { .. }
             | Self::PlaneHardlyMoves { .. }
             | Self::RotationNotObservable { .. } => 5,
-            Self::Restarted { .. } | Self::MayNotHaveSettled { .. } | Self::LinesNotFollowed { .. } => 6,
+            Self::Restarted { .. }
+            | Self::FramesRejected { .. }
+            | Self::RepeatedFrames { .. }
+            | Self::MayNotHaveSettled { .. }
+            | Self::LinesNotFollowed { .. } => 6,
             Self::MotionChanged { .. } => 7,
-            Self::FramesRejected { .. } => 8,
-            Self::FrameRejected(_) | Self::MoreFramesRejected { .. } => 9,
+            Self::FrameRejected(_) | Self::MoreFramesRejected { .. } => 8,
         }
     }
 
@@ -193,6 +208,7 @@ impl Warning {
             Self::OfTwoFrames => "of_two_frames",
             Self::Restarted { .. } => "restarted",
             Self::FramesRejected { .. } => "frames_rejected",
+            Self::RepeatedFrames { .. } => "repeated_frames",
             Self::Ambiguous(_) => "ambiguous",
             Self::MotionChanged { .. } => "motion_changed",
             Self::TwoPlanes(_) => "two_planes",
@@ -224,9 +240,7 @@ impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::PointsOutOfOrder { frame, perimeters } => write_out_of_order(f, *frame, *perimeters),
-            Self::NotObservable { parameters } => {
-                write!(f, "not observable from these outlines: {}", parameters.join(", "))
-            }
+            Self::NotObservable { parameters, contours } => write_not_observable(f, parameters, *contours),
             Self::NotKnown { parameters } => {
                 write!(f, "not known well enough at the end to be stated: {}", parameters.join(", "))
             }
@@ -238,7 +252,8 @@ impl fmt::Display for Warning {
             Self::Reacquiring { last_known } => write_reacquiring(f, *last_known),
             Self::OfTwoFrames => f.write_str(OF_TWO_FRAMES),
             Self::Restarted { times } => write!(f, "the object was given up and started again {times} time(s)"),
-            Self::FramesRejected { rejected, frames } => write!(f, "{rejected} of {frames} frames rejected"),
+            Self::FramesRejected { rejected, frames } => write_frames_rejected(f, *rejected, *frames),
+            Self::RepeatedFrames { every, rate } => write_repeated_frames(f, *every, *rate),
             Self::Ambiguous(ambiguity) => write_ambiguity(f, ambiguity),
             Self::MotionChanged { dynamics } => write_change(f, *dynamics),
             Self::TwoPlanes(ambiguity) => write_two_planes(f, ambiguity),
@@ -248,7 +263,7 @@ impl fmt::Display for Warning {
             }
             Self::PlaneMisfit { excess } => write_plane_misfit(f, *excess),
             Self::TooManyRejected { rejected, frames } => write_too_many_rejected(f, *rejected, *frames),
-            Self::WrongFamily { family, motion } => write_wrong_family(f, *family, *motion),
+            Self::WrongFamily { family, motion, ground } => write_wrong_family(f, *family, *motion, *ground),
             Self::StandingEdge(edge) => write_standing_edge(f, edge),
             Self::PartDisagrees { share } => write_part(f, *share),
             Self::Aliases { omega, motion } => write_aliases(f, omega, *motion),
@@ -264,6 +279,18 @@ impl fmt::Display for Warning {
             Self::AffineBias => f.write_str(AFFINE_BIAS),
         }
     }
+}
+
+fn write_not_observable(
+    f: &mut fmt::Formatter<'_>,
+    parameters: &[&'static str],
+    contours: TracedContours,
+) -> fmt::Result {
+    let advice = match contours {
+        TracedContours::AllKnown => "",
+        TracedContours::BoundaryAlone => "; holes or marks within the object may show it: --contours all",
+    };
+    write!(f, "not observable from these outlines: {}{advice}", parameters.join(", "))
 }
 
 fn write_part(f: &mut fmt::Formatter<'_>, share: f64) -> fmt::Result {
@@ -330,14 +357,6 @@ fn write_plane_misfit(f: &mut fmt::Formatter<'_>, excess: f64) -> fmt::Result {
     )
 }
 
-fn write_too_many_rejected(f: &mut fmt::Formatter<'_>, rejected: usize, frames: usize) -> fmt::Result {
-    write!(
-        f,
-        "{rejected} of {frames} frames do not fit the others, so that no motion is stated: the outlines may be of \
-         several things, or turn by about half a turn (of their symmetry) from frame to frame"
-    )
-}
-
 fn write_aliases(f: &mut fmt::Formatter<'_>, omega: &[f64], motion: MotionModel) -> fmt::Result {
     let list: Vec<String> = omega.iter().take(MOST_ALIASES).map(|omega| significant(*omega, 4)).collect();
     write!(
@@ -363,41 +382,6 @@ fn write_lines_not_followed(f: &mut fmt::Formatter<'_>, skipped: usize, interval
         "lines not followed over {skipped} of {intervals} intervals between frames: \
          the outline turns by more than about half a radian"
     )
-}
-
-/// What the outlines do and what to try.
-fn write_wrong_family(f: &mut fmt::Formatter<'_>, family: WrongFamily, motion: MotionModel) -> fmt::Result {
-    match family {
-        WrongFamily::Growth => {
-            write!(f, "the outlines grow or shrink, which {motion} motion does not: try --motion similarity")
-        }
-        WrongFamily::Shear => write!(
-            f,
-            "the outlines are stretched or sheared, which {motion} motion does not do: check the pixel aspect, try --rectify \
-             where the camera is tilted, or --motion affine; light or shadow on one side of the object does nearly the same"
-        ),
-        WrongFamily::Perspective => write!(
-            f,
-            "the outlines change as in perspective, which {motion} motion does not do: check the lens, try --rectify where the \
-             camera is tilted, or --motion projective"
-        ),
-        WrongFamily::RollingShutter => f.write_str(
-            "the outlines are slanted by their own motion, as by a camera that reads its rows one after the other (a rolling \
-             shutter): velocities may be off by some percent",
-        ),
-        WrongFamily::Lens => f.write_str(
-            "the outlines are bent from the middle of the picture outwards, as by a lens: velocities may be off by some percent; \
-             undistort the pictures with a calibration of the camera",
-        ),
-        WrongFamily::Shape => {
-            let wider = if motion >= MotionModel::Affine { "" } else { ", --motion affine" };
-            write!(
-                f,
-                "the outlines change their shape in ways that no {motion} motion does: the object may bend, the camera look at it \
-                 from aside (--rectify{wider}), its lens distort it, or light, shadow or motion blur move the edges"
-            )
-        }
-    }
 }
 
 /// Turns in degrees, positive in the direction of a positive omega.

@@ -7,6 +7,7 @@ use super::{
     result::VELOCITY_NAMES,
     step::{Step, of_following, unstated_of},
 };
+use crate::picture_tracing::{TracedContours, TracedGround};
 use crate::rejection::RejectionCause;
 use crate::warning::Warning;
 
@@ -75,7 +76,7 @@ impl FilteredObject {
                 if filter.hides_velocity() { &mut hidden } else { &mut others }.extend(VELOCITY_NAMES);
             }
             if !hidden.is_empty() {
-                warnings.push(Warning::NotObservable { parameters: hidden });
+                warnings.push(Warning::NotObservable { parameters: hidden, contours: TracedContours::default() });
             }
             if !others.is_empty() {
                 warnings.push(Warning::NotKnown { parameters: others });
@@ -90,7 +91,8 @@ impl FilteredObject {
         warnings.extend(of_following(filter, last_known.map(|(time, _)| time)));
         warnings.extend(ambiguity.map(Warning::Ambiguous));
         if let Some(family) = filter.wrong_family() {
-            warnings.push(Warning::WrongFamily { family, motion: filter.settings().model });
+            let (motion, ground) = (filter.settings().model, TracedGround::default());
+            warnings.push(Warning::WrongFamily { family, motion, ground });
         }
         let aliases = filter.aliases();
         if !aliases.is_empty() {

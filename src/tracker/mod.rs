@@ -18,6 +18,7 @@ mod plane_object;
 mod poses;
 mod queues;
 mod recording;
+mod repeat_pattern;
 #[cfg(feature = "serde")]
 mod resting;
 mod result;

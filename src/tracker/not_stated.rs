@@ -106,7 +106,7 @@ impl ObjectResult {
     /// Of a value that is not stated.
     fn why_unstated(&self, name: &str) -> NotStated {
         let is_hidden = self.warnings.iter().any(|warning| match warning {
-            Warning::NotObservable { parameters }
+            Warning::NotObservable { parameters, .. }
             | Warning::RotationNotObservable { parameters }
             | Warning::PlaneHardlyMoves { parameters } => parameters.contains(&name),
             _ => false,

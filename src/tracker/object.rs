@@ -1,16 +1,21 @@
 //! One object of a sequence.
 use freeform_estimate::{MotionEstimate, PointVelocity};
+use freeform_outline_filter::Rejection;
 use freeform_outline_io::OutlineFrame;
 use freeform_riccati::CameraScale;
 
 use super::{
-    contour_order::ContourOrder, identifier::Identifier, observation::Observation, result::ObjectResult,
+    contour_order::ContourOrder,
+    identifier::Identifier,
+    observation::Observation,
+    repeat_pattern::{Content, RepeatPattern},
+    result::ObjectResult,
     settings::TrackerSettings,
 };
 use crate::Rectification;
 use crate::frame_ranges::FrameRanges;
 use crate::polygon::outline_of_pixel_polygon;
-use crate::rejection::{FrameRejection, RejectionCause};
+use crate::rejection::{FrameRejection, RejectionCause, are_many_rejected};
 use crate::warning::Warning;
 
 /// Rejected frames of an object that are kept with their reasons.
@@ -24,6 +29,7 @@ pub(super) struct TrackedObject {
     pub(super) scale: Option<CameraScale>,
     pub(super) rectification: Option<Rectification>,
     pub(super) contour_order: ContourOrder,
+    pub(super) repeats: RepeatPattern,
     pub(super) extras: Extras,
     pub(super) frames: usize,
     pub(super) rejected: usize,
@@ -69,6 +75,7 @@ impl TrackedObject {
             scale: settings.scale,
             rectification: settings.rectification,
             contour_order: ContourOrder::default(),
+            repeats: RepeatPattern::default(),
             extras,
             frames: 0,
             rejected: 0,
@@ -104,6 +111,11 @@ impl TrackedObject {
         };
         let expected = self.extras.expected_state.of(|| self.identifier.expected_state(frame.time));
         let step = self.identifier.push(frame.time, in_plane.as_ref().unwrap_or(seen));
+        let content = match step.rejected_because {
+            Some(RejectionCause::NotAccepted(Rejection::Repeated)) => Content::Repeated,
+            _ => Content::New,
+        };
+        self.repeats.take(frame.frame, frame.time, content);
         let rejection = self.count(frame.frame, step.rejected_because);
         Observation {
             object: self.name.clone(),
@@ -235,6 +247,14 @@ impl TrackedObject {
         let mut warnings: Vec<Warning> = out_of_order.into_iter().chain(identifier.warnings()).collect();
         if raw.is_some() && estimate.is_none() {
             warnings.push(Warning::Diverged);
+        }
+        if let Some(repeats) = self.repeats.warning() {
+            let others = self.rejected.saturating_sub(self.repeats.repeated());
+            // That they were not used is right.
+            let is_explained = |warning: &Warning| matches!(warning, Warning::FramesRejected { .. });
+            warnings.retain(|warning| !is_explained(warning) || are_many_rejected(others, self.frames));
+            warnings.push(repeats);
+            warnings.sort_by_key(Warning::order);
         }
         warnings.extend(self.rejections.iter().cloned().map(Warning::FrameRejected));
         if self.rejected > self.rejections.len() {

@@ -3,8 +3,8 @@ use freeform_outline_filter::{Ambiguity, DynamicsWeights, PlaneAmbiguity};
 use nalgebra::DMatrix;
 
 use super::{family::MotionFamily, settings::Method};
-use crate::Warning;
 use crate::rejection::FrameRejection;
+use crate::{PictureTracing, Warning};
 
 /// The result for an object after all its frames so far.
 #[derive(Debug, Clone, PartialEq)]
@@ -101,6 +101,19 @@ impl ObjectResult {
     #[must_use]
     pub fn of_doubtful_outlines(self) -> Self {
         self.warned_of_two_frames()
+    }
+
+    /// The same result, of outlines that were found so in pictures: its warnings advise what has not been chosen yet.
+    #[must_use]
+    pub fn traced_by(mut self, tracing: PictureTracing) -> Self {
+        for warning in &mut self.warnings {
+            match warning {
+                Warning::NotObservable { contours, .. } => *contours = tracing.contours,
+                Warning::WrongFamily { ground, .. } => *ground = tracing.ground,
+                _ => {}
+            }
+        }
+        self
     }
 
     /// The same result with the warning that two frames alone tell the motion, where another one was rejected: it does not lie where they lead.

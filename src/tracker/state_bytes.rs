@@ -13,6 +13,7 @@ use super::{
     filtered_object::FilteredObject,
     identifier::Identifier,
     object::{Extras, REJECTIONS_KEPT, TrackedObject},
+    repeat_pattern::RepeatPattern,
     settings::{MethodSettings, TrackerSettings},
 };
 use crate::frame_ranges::FrameRanges;
@@ -69,6 +70,7 @@ struct SavedObject {
     rejected: usize,
     rejections: Vec<SavedRejection>,
     rejected_later: FrameRanges,
+    repeats: RepeatPattern,
 }
 
 /// A rejected frame and what is told of it.
@@ -187,6 +189,7 @@ fn saved(object: &TrackedObject) -> Result<SavedObject, TrackerStateError> {
         rejected: object.rejected,
         rejections: rejections.collect(),
         rejected_later: object.rejected_later.clone(),
+        repeats: object.repeats.clone(),
     })
 }
 
@@ -219,9 +222,14 @@ fn restored_identifier(saved: SavedIdentifier, method: &MethodSettings) -> Resul
 fn restored(saved: SavedObject, settings: &TrackerSettings) -> Result<TrackedObject, StateError> {
     let inconsistent = |part| Err(StateError::Inconsistent { part });
     let identifier = restored_identifier(saved.identifier, &settings.method)?;
-    let SavedObject { name, frames_looked_at, frames, rejected, rejections, rejected_later, .. } = saved;
+    let SavedObject { name, frames_looked_at, frames, rejected, rejections, rejected_later, repeats, .. } = saved;
     let counts = [frames, StateFormat::MOST_COUNTED].is_sorted() && [rejections.len(), rejected, frames].is_sorted();
-    if !counts || rejections.len() > REJECTIONS_KEPT || frames_looked_at > FRAMES || !rejected_later.is_sound() {
+    if !counts
+        || rejections.len() > REJECTIONS_KEPT
+        || frames_looked_at > FRAMES
+        || !rejected_later.is_sound()
+        || !repeats.is_valid(rejected)
+    {
         return inconsistent("counts of frames");
     }
     let warning = saved.out_of_order.map(|(frame, perimeters)| Warning::PointsOutOfOrder { frame, perimeters });
@@ -242,6 +250,7 @@ fn restored(saved: SavedObject, settings: &TrackerSettings) -> Result<TrackedObj
         rejected,
         rejections: rejections.collect(),
         rejected_later,
+        repeats,
         name,
     })
 }

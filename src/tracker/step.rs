@@ -5,8 +5,8 @@ use freeform_outline_filter::{Ambiguity, MotionFilter, Phase, PlaneAmbiguity, Un
 
 use super::observation::ObjectPhase;
 use crate::AdaptiveProgress;
-use crate::rejection::RejectionCause;
-use crate::warning::{MANY_REJECTED, Warning};
+use crate::rejection::{RejectionCause, are_many_rejected};
+use crate::warning::Warning;
 
 /// What became of one frame.
 #[derive(Debug, Default)]
@@ -39,7 +39,6 @@ pub(super) fn of_following(filter: &MotionFilter, last_known: Option<f64>) -> Ve
     let rejected = filter.frames_rejected();
     let frames = filter.frames_accepted() + rejected;
     let restarts = filter.restarts();
-    let are_many = rejected as f64 > MANY_REJECTED * frames as f64;
     let unstated = match filter.unstated() {
         Some(Unstated::ManyRejected { rejected, frames }) => Some(Warning::TooManyRejected { rejected, frames }),
         _ => None,
@@ -48,7 +47,7 @@ pub(super) fn of_following(filter: &MotionFilter, last_known: Option<f64>) -> Ve
         (filter.phase() == Phase::Lost).then_some(Warning::Lost { last_known }),
         unstated,
         (restarts > 0).then_some(Warning::Restarted { times: restarts }),
-        are_many.then_some(Warning::FramesRejected { rejected, frames }),
+        are_many_rejected(rejected, frames).then_some(Warning::FramesRejected { rejected, frames }),
     ];
     // What stands in front of an object says so by its edges.
     let part = filter.disagreeing_part().filter(|_| filter.standing_edges().len() == 0);

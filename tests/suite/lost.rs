@@ -88,7 +88,7 @@ fn a_velocity_that_the_outline_does_not_show_is_unobservable_and_one_that_is_not
     assert!(result.hides_velocity && result.velocity.is_none());
     assert_eq!(result.velocity_not_stated(), Some(NotStated::Unobservable));
     assert_eq!(observations[11].velocity_not_stated(), Some(NotStated::Unobservable));
-    let is_told = |warning: &Warning| matches!(warning, Warning::NotObservable { parameters } if parameters.ends_with(&["v1", "v2"]));
+    let is_told = |warning: &Warning| matches!(warning, Warning::NotObservable { parameters, .. } if parameters.ends_with(&["v1", "v2"]));
     assert!(result.warnings.iter().any(is_told), "{:?}", result.warnings);
     let mut of_egg = Tracker::new(settings).expect("settings");
     of_egg.push(&egg(0, 0.0, 0.0));

@@ -3,7 +3,7 @@ use std::{collections::BTreeSet, num::NonZero, panic};
 
 use crate::common::seen_as;
 use freeform_motion::{
-    Tracker, TrackerSettings, Warning,
+    TracedContours, Tracker, TrackerSettings, Warning,
     curve_fit::Outline,
     estimate::TimeNotIncreasing,
     outline_filter::{Ambiguity, FilterError, FilterSettings},
@@ -262,13 +262,14 @@ fn every_warning_has_a_code_of_its_own_in_snake_case_and_a_message_on_one_line()
         FrameRejection { object: "0".to_owned(), frame: 1, cause: RejectionCause::NoOutline("torn".to_owned()) };
     let warnings = [
         Warning::PointsOutOfOrder { frame: 1, perimeters: 9.0 },
-        Warning::NotObservable { parameters: parameters() },
+        Warning::NotObservable { parameters: parameters(), contours: TracedContours::default() },
         Warning::NotKnown { parameters: parameters() },
         Warning::RotationNotObservable { parameters: parameters() },
         Warning::Lost { last_known: Some(1.0) },
         Warning::Reacquiring { last_known: 1.0 },
         Warning::Restarted { times: 1 },
         Warning::FramesRejected { rejected: 1, frames: 2 },
+        Warning::RepeatedFrames { every: 6, rate: 30.0 },
         Warning::Ambiguous(Ambiguity { turn: -0.5, rival_turns: vec![0.25, 1.0], parameters: parameters() }),
         Warning::MotionChanged { dynamics: None },
         Warning::Diverged,
@@ -286,7 +287,7 @@ fn every_warning_has_a_code_of_its_own_in_snake_case_and_a_message_on_one_line()
     assert!(warnings.iter().all(|warning| !warning.to_string().is_empty() && !warning.to_string().contains('\n')));
     let ambiguous = "ambiguous: another turn explains the outlines equally well: -14.3 or -57.3 instead of 28.6 degrees from one \
                      frame to the next";
-    assert_eq!(warnings[8].to_string(), ambiguous);
+    assert_eq!(warnings[9].to_string(), ambiguous);
 }
 
 #[test]

@@ -1,12 +1,12 @@
 //! docs/warnings.md has every warning: its code, an example of its message, and nothing else.
 use std::collections::BTreeSet;
 
-use freeform_motion::Warning;
 use freeform_motion::estimate::PlaneEstimate;
 use freeform_motion::outline_filter::{Ambiguity, PlaneAmbiguity, PlaneSolution, Rejection, StandingEdge, WrongFamily};
 use freeform_motion::outline_io::{OriginWarning, TracingWarning};
 use freeform_motion::riccati::{MotionModel, PlaneMotion};
 use freeform_motion::tracker::{FrameRejection, RejectionCause};
+use freeform_motion::{TracedContours, TracedGround, Warning};
 use nalgebra::{Point2, SMatrix};
 
 const PAGE: &str = include_str!("../../docs/warnings.md");
@@ -16,7 +16,7 @@ const TRACING_SOURCE: &str = include_str!("../../crates/outline-io/src/choice/wa
 
 /// One example of each warning.
 fn examples() -> Vec<Warning> {
-    let family = |family| Warning::WrongFamily { family, motion: MotionModel::Rigid };
+    let family = |family| Warning::WrongFamily { family, motion: MotionModel::Rigid, ground: TracedGround::default() };
     let plane = PlaneEstimate::new(PlaneMotion::of_parameters([0.0; 8]), SMatrix::zeros(), [true; 8]);
     let solution = |probability| PlaneSolution { estimate: plane, probability };
     vec![
@@ -55,14 +55,15 @@ fn examples() -> Vec<Warning> {
         Warning::PlaneMisfit { excess: 3.2 },
         Warning::AffineBias,
         Warning::MotionChanged { dynamics: None },
-        Warning::NotObservable { parameters: vec!["omega"] },
+        Warning::NotObservable { parameters: vec!["omega"], contours: TracedContours::default() },
         Warning::NotKnown { parameters: vec!["b1", "b2"] },
         Warning::RotationNotObservable { parameters: vec!["omega", "b1", "b2"] },
         Warning::RotationFromPath,
         Warning::PlaneHardlyMoves { parameters: vec!["vx", "vy", "vz", "normal"] },
         Warning::MayNotHaveSettled { seconds: 4.0 },
         Warning::LinesNotFollowed { skipped: 12, intervals: 59 },
-        Warning::FramesRejected { rejected: 7, frames: 120 },
+        Warning::FramesRejected { rejected: 18, frames: 120 },
+        Warning::RepeatedFrames { every: 6, rate: 30.0 },
         Warning::FrameRejected(FrameRejection {
             object: "0".to_owned(),
             frame: 17,
@@ -146,4 +147,15 @@ fn every_section_says_what_to_make_of_it() {
         let told = section.lines().skip(1).filter(|line| !line.starts_with('>') && !line.starts_with('#'));
         assert!(told.map(str::len).sum::<usize>() > 40, "{code}");
     }
+}
+
+#[test]
+fn what_is_advised_against_light_fits_how_objects_were_told_from_the_ground() {
+    let advised =
+        |ground| Warning::WrongFamily { family: WrongFamily::Shape, motion: MotionModel::Rigid, ground }.to_string();
+    assert!(advised(TracedGround::GreyValues).contains("(--background)"));
+    let against_background = advised(TracedGround::Background);
+    assert!(!against_background.contains("--background") && against_background.contains("--edge-uncertainty"));
+    let unknown = advised(TracedGround::Unknown);
+    assert!(against_background.starts_with(&unknown) && !unknown.contains("--edge-uncertainty"));
 }

@@ -34,15 +34,28 @@ impl Line {
     }
 }
 
+/// Where the warnings stand that are not told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Rest {
+    /// In the document of the results.
+    ListedByJson,
+    /// Nowhere.
+    Counted,
+}
+
 /// What is told of results: the causes first, as their warnings come.
-pub(crate) fn handful(results: &[ObjectResult]) -> Vec<Line> {
+pub(crate) fn handful(results: &[ObjectResult], rest: Rest) -> Vec<Line> {
     let mut lines = Vec::new();
     let mut objects = results.iter().filter(|result| !result.warnings.is_empty());
     while let Some(result) = objects.next() {
-        let of_object = lines_of(&result.warnings);
+        let of_object = lines_of(&result.warnings, rest);
         if lines.len() + of_object.len() > OF_ALL {
             let others = 1 + objects.count();
-            lines.push(Line::without_code(format!("there are warnings of {others} more object(s); --json lists them")));
+            let listed = match rest {
+                Rest::ListedByJson => "; --json lists them",
+                Rest::Counted => "",
+            };
+            lines.push(Line::without_code(format!("there are warnings of {others} more object(s){listed}")));
             break;
         }
         let of_object = of_object.into_iter();
@@ -53,7 +66,7 @@ pub(crate) fn handful(results: &[ObjectResult]) -> Vec<Line> {
     lines
 }
 
-fn lines_of(warnings: &[Warning]) -> Vec<Line> {
+fn lines_of(warnings: &[Warning], elsewhere: Rest) -> Vec<Line> {
     let told = if warnings.len() > OF_OBJECT { OF_OBJECT - 1 } else { warnings.len() };
     let (told, rest) = warnings.split_at(told);
     let of_warning = |warning: &Warning| Line { code: Some(warning.code()), message: warning.to_string() };
@@ -62,7 +75,11 @@ fn lines_of(warnings: &[Warning]) -> Vec<Line> {
         let mut counts = BTreeMap::new();
         rest.iter().for_each(|warning| *counts.entry(warning.code()).or_insert(0) += 1);
         let counts: Vec<String> = counts.iter().map(|(code, count)| format!("{count} {code}")).collect();
-        let others = format!("{} more warnings, which --json lists: {}", rest.len(), counts.join(", "));
+        let listed = match elsewhere {
+            Rest::ListedByJson => ", which --json lists",
+            Rest::Counted => "",
+        };
+        let others = format!("{} more warnings{listed}: {}", rest.len(), counts.join(", "));
         lines.push(Line::without_code(others));
     }
     lines
@@ -78,9 +95,9 @@ mod tests {
             let restarted = (0..count.saturating_sub(2)).map(|times| Warning::Restarted { times });
             restarted.chain([Warning::Lost { last_known: None }, Warning::Diverged]).take(count).collect()
         };
-        assert!(lines_of(&warnings(0)).is_empty());
-        assert_eq!(lines_of(&warnings(5)).len(), 5);
-        let many = lines_of(&warnings(8));
+        assert!(lines_of(&warnings(0), Rest::ListedByJson).is_empty());
+        assert_eq!(lines_of(&warnings(5), Rest::ListedByJson).len(), 5);
+        let many = lines_of(&warnings(8), Rest::ListedByJson);
         assert_eq!(many.len(), 5);
         let others = "4 more warnings, which --json lists: 1 diverged, 1 lost, 2 restarted";
         assert_eq!(many[4], Line::without_code(others.to_owned()));

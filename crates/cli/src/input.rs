@@ -16,6 +16,7 @@ use crate::awaited::{Awaited, Waiting};
 use crate::failure::{Failure, note, plain, warn, warn_of};
 use crate::picture_input::{ASSUMED_RATE, PictureInput, Purpose};
 use crate::progress::Verbosity;
+use crate::result_origin::{Naming, ResultOrigin};
 use crate::seen::Item;
 
 /// Options for pictures that hold for polygons in pictures too.
@@ -290,9 +291,16 @@ impl Input {
     }
 
     /// Whether two outlines of one name may be of two things.
-    pub(crate) fn may_mistake_one_for_another(&self) -> bool {
+    fn may_mistake_one_for_another(&self) -> bool {
         self.pictures().is_some_and(PictureInput::may_mistake_one_for_another)
             || self.told_by_table().contains(OriginWarning::TracingDoubtful)
+    }
+
+    /// What the warnings of its results depend on.
+    pub(crate) fn result_origin(&self) -> ResultOrigin {
+        let tracing = self.pictures().map(PictureInput::tracing).unwrap_or_default();
+        let naming = if self.may_mistake_one_for_another() { Naming::InDoubt } else { Naming::Certain };
+        ResultOrigin { tracing, naming }
     }
 
     /// That files were named in another order than their numbers have, as a shell orders them.

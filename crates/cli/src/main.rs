@@ -17,7 +17,9 @@ mod picture_input;
 mod picture_settings;
 mod progress;
 mod reader;
+mod result_origin;
 mod seen;
+mod stream_warnings;
 mod traced_input;
 mod tracing_choice;
 

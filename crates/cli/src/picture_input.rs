@@ -14,10 +14,10 @@ use freeform_motion::outline_io::{
     PictureSettings, TracedPicture, TracedPictures, TracingEvidence, read_ahead,
 };
 use freeform_motion::riccati::CameraScale;
-use freeform_motion::short;
+use freeform_motion::{PictureTracing, TracedContours, TracedGround, short};
 use image::ImageFormat;
 
-use crate::args::{ObjectsChoice, PictureOptions, through_ffmpeg};
+use crate::args::{ContoursChoice, ObjectsChoice, PictureOptions, through_ffmpeg};
 use crate::awaited::{Awaited, Waiting};
 use crate::command_line::{command_line_of_stdin, quoted};
 use crate::failure::{Failure, plain};
@@ -233,6 +233,24 @@ impl PictureInput {
     /// Whether the way of tracing was chosen, and may show something else than an object.
     fn is_tracing_in_doubt(&self) -> bool {
         self.chosen.as_ref().is_some_and(|chosen| !chosen.choice.is_convincing())
+    }
+
+    /// How objects are traced, as far as another choice may show more.
+    pub(crate) fn tracing(&self) -> PictureTracing {
+        if self.has_labels() {
+            return PictureTracing::default();
+        }
+        let contours = match (&self.chosen, self.options.contours) {
+            // Where the way was chosen, steady ones have been looked for.
+            (_, Some(ContoursChoice::All)) | (Some(_), None) => TracedContours::AllKnown,
+            (_, Some(ContoursChoice::Boundary)) | (None, None) => TracedContours::BoundaryAlone,
+        };
+        let ground = match (&self.options.background, self.options.ring) {
+            (Some(_), _) => TracedGround::Background,
+            (None, Some(_)) => TracedGround::Unknown,
+            (None, None) => TracedGround::GreyValues,
+        };
+        PictureTracing { ground, contours }
     }
 
     /// Whether two outlines of one name may be of two things: the way of tracing is in doubt, or there are more than two pictures, in the others of

@@ -1,10 +1,10 @@
 //! Names of models, methods and settings.
-use freeform_motion::Warning;
 use freeform_motion::curve_fit::{Degree, Normalise};
 use freeform_motion::identify::AdaptiveLaw;
 use freeform_motion::outline_filter::{Dynamics, DynamicsWeights, Unstated, WrongFamily};
 use freeform_motion::riccati::{CameraScale, MotionModel};
 use freeform_motion::tracker::Method;
+use freeform_motion::{TracedGround, Warning};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -68,7 +68,7 @@ pub(crate) fn dynamics_weights<'py>(py: Python<'py>, weights: &DynamicsWeights) 
 
 /// The codes of the warnings that say the same.
 pub(crate) fn wrong_family_name(family: WrongFamily) -> &'static str {
-    let code = Warning::WrongFamily { family, motion: MotionModel::Rigid }.code();
+    let code = Warning::WrongFamily { family, motion: MotionModel::Rigid, ground: TracedGround::default() }.code();
     code.strip_prefix("wrong_family_").unwrap_or(code)
 }
 

@@ -83,7 +83,8 @@ pub(crate) struct IdentifyArgs {
     /// object. The column reason says why a frame was not accepted, unstated which values are empty and why, as in --trace. point_x and
     /// point_y are where that middle is, the point of the object that v1 and v2 belong to: the centroid of what is known of its outline, or
     /// the point nearby whose motion the outline shows where it does not show that of the centroid, as the centre of a disc of which half is
-    /// seen. It need not be at x, y. Not available with the adaptive method.
+    /// seen. It need not be at x, y. aliases are other angular velocities (rad/s) that explain the outlines as well, as in '-4.71; 7.85'.
+    /// Not available with the adaptive method.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) trajectory: Option<PathBuf>,
 

@@ -11,7 +11,7 @@ use crate::args::{DynamicsChoice, IdentifyArgs, IdentifyFormat, IdentifyMethod, 
 use crate::awaited::Waiting;
 use crate::command_line::command_line;
 use crate::failure::{Failure, warn, warn_of};
-use crate::handful::{Line, handful};
+use crate::handful::{Line, Rest, handful};
 use crate::hints::Hints;
 use crate::input::Input;
 use crate::interrupt;
@@ -161,9 +161,8 @@ impl<'a> Outcome<'a> {
         left_out: LeftOut,
         failure: Option<Failure>,
     ) -> Self {
-        let in_doubt = input.may_mistake_one_for_another();
-        let doubted = |result: ObjectResult| if in_doubt { result.of_doubtful_outlines() } else { result };
-        let results: Vec<ObjectResult> = tracker.results().into_iter().map(doubted).collect();
+        let origin = input.result_origin();
+        let results: Vec<ObjectResult> = tracker.results().into_iter().map(|result| origin.told(result)).collect();
         let is_found = results.iter().any(|result| result.parameters().is_some());
         let failure = failure.or_else(|| (!is_found).then(|| nothing_found(&input.name, &results)));
         let b = input.meaning_of_b(&args.options);
@@ -210,7 +209,7 @@ impl<'a> Outcome<'a> {
             return Ok(());
         }
         if !self.args.quiet {
-            handful(&self.results).iter().for_each(Line::print);
+            handful(&self.results, Rest::ListedByJson).iter().for_each(Line::print);
         }
         let Self { args, results, b, .. } = self;
         let mut sink = Sink::stdout();

@@ -1,7 +1,7 @@
 use std::io::Write as _;
 
-use freeform_motion::tracker::{ObjectResult, Poses};
-use freeform_motion::{Tracker, Warning};
+use freeform_motion::Tracker;
+use freeform_motion::tracker::Poses;
 
 use crate::args::TrackArgs;
 use crate::awaited::Waiting;
@@ -13,6 +13,7 @@ use crate::overlay::InputOverlay;
 use crate::picture_input::PictureInput;
 use crate::progress::Verbosity;
 use crate::reader::{Event, follow_stream};
+use crate::stream_warnings::StreamWarnings;
 
 /// Identifies as a stream.
 pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
@@ -33,7 +34,8 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     let mut overlay = InputOverlay::open(args.drawings.overlay.as_deref(), &args.inputs, &input, &args.options)?;
     interrupt::listen();
     let name = input.name.clone();
-    let in_doubt = input.may_mistake_one_for_another() && !args.quiet;
+    let origin = input.result_origin();
+    let mut warnings = StreamWarnings::new(verbosity);
     let stated = (following.settings().method(), following.settings().motion());
     let b = input.meaning_of_b(&args.options);
     let mut poses = Poses::new(following.settings().scale);
@@ -45,10 +47,9 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
             Ok(event) => event,
             Err(left) => {
                 poses.forget(&left.seen.object);
-                if in_doubt {
-                    warn_of_two_frames(left.result.clone());
-                }
-                return write_line(&mut sink, &closing_line(left, &b).map_err(Failure::unusable)?);
+                let result = origin.told(left.result.clone());
+                warnings.of_left(&result);
+                return write_line(&mut sink, &closing_line(&left.seen, &result, &b).map_err(Failure::unusable)?);
             }
         };
         if let Some(overlay) = &mut overlay {
@@ -63,9 +64,10 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
         let pose = poses.take(observation);
         write_line(&mut sink, &track_line(observation, pose.as_deref(), stated, &b).map_err(Failure::unusable)?)
     })?;
-    // A table says it in its rows.
-    if in_doubt || input.may_mistake_one_for_another() && !args.quiet {
-        following.results().into_iter().for_each(warn_of_two_frames);
+    // By now the rows of a table have said how they were found.
+    let origin = input.result_origin();
+    if accepted > 0 {
+        warnings.of_present(following.results().into_iter().map(|result| origin.told(result)).collect());
     }
     if let Some(overlay) = overlay {
         overlay.finish()?;
@@ -78,15 +80,6 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
         (0, Some(reason)) => Err(Failure::no_result(format_args!("no frame could be used: {reason}"))),
         (0, None) => Err(Failure::no_result(format_args!("{name}: no outline in the file"))),
         _ => Ok(()),
-    }
-}
-
-/// Says of an object that is seen no longer, where its two outlines may be of two things, that its motion is that between two frames, if it is.
-/// Before the third frame that holds for every object.
-fn warn_of_two_frames(result: ObjectResult) {
-    let result = result.of_doubtful_outlines();
-    if result.warnings.contains(&Warning::OfTwoFrames) {
-        warn_of(Warning::OfTwoFrames.code(), &format!("object {}: {}", result.object, Warning::OfTwoFrames));
     }
 }
 

@@ -186,8 +186,9 @@ impl From<DynamicsWeights> for DynamicsJson {
     }
 }
 
+/// A warning by its code.
 #[derive(serde::Serialize)]
-struct WarningJson {
+pub(super) struct WarningJson {
     code: &'static str,
     message: String,
 }

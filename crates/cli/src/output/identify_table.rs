@@ -35,11 +35,11 @@ pub(crate) fn write_identify_table(
 
 #[cfg(test)]
 mod tests {
-    use freeform_motion::Warning;
     use freeform_motion::estimate::{MotionEstimate, PointVelocity};
     use freeform_motion::outline_filter::Ambiguity;
     use freeform_motion::riccati::{MotionModel, RigidMotion};
     use freeform_motion::tracker::Method;
+    use freeform_motion::{TracedContours, Warning};
     use nalgebra::{Matrix2, Point2, Vector2};
 
     use super::*;
@@ -59,7 +59,7 @@ mod tests {
             covariance: Matrix2::new(1e-6, 0.0, 0.0, 4e-6),
         };
         let ambiguity = Ambiguity { turn: -0.9, rival_turns: vec![0.7], parameters: vec!["omega"] };
-        let hidden = vec![Warning::NotObservable { parameters: vec!["omega"] }];
+        let hidden = vec![Warning::NotObservable { parameters: vec!["omega"], contours: TracedContours::default() }];
         let results = [
             ObjectResult { velocity: Some(velocity), ..result(Some(estimate)) },
             ObjectResult { warnings: hidden, ..result(Some(estimate.with_unobservable(0))) },

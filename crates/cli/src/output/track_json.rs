@@ -1,12 +1,11 @@
 use freeform_drawing::MeaningOfB;
 use freeform_motion::estimate::PoseParameter;
-use freeform_motion::tracker::{Method, MotionFamily, NotStated, ObjectPhase, Observation};
+use freeform_motion::tracker::{Method, MotionFamily, NotStated, ObjectPhase, ObjectResult, Observation, Sighting};
 use serde::ser::{Serialize, Serializer};
 
-use super::identify_json::{EitherAmbiguity, Parameters, Unstated, ambiguity_json, generator_rows};
+use super::identify_json::{EitherAmbiguity, Parameters, Unstated, WarningJson, ambiguity_json, generator_rows};
 use super::plane_json::NormalJson;
 use super::velocity_json::VelocityJson;
-use crate::seen::Left;
 
 /// One frame as one line of JSON, without its end. The pose is that of the object after the frame, where it is known.
 pub(crate) fn track_line(
@@ -39,11 +38,12 @@ pub(crate) fn track_line(
         .and(pose.iter().flat_map(PoseJson::unstated)),
         pose,
         segment: Some(observation.segment),
+        warnings: None,
     })
 }
 
 /// The last line of an object of a stream that has left, without its end.
-pub(crate) fn closing_line(Left { seen, result }: &Left, b: &MeaningOfB) -> serde_json::Result<String> {
+pub(crate) fn closing_line(seen: &Sighting, result: &ObjectResult, b: &MeaningOfB) -> serde_json::Result<String> {
     // Where it is by now nobody knows.
     let pose = PoseJson::new((result.method, result.motion), None, NotStated::Unknown, b);
     serde_json::to_string(&TrackLine {
@@ -64,6 +64,7 @@ pub(crate) fn closing_line(Left { seen, result }: &Left, b: &MeaningOfB) -> serd
         unstated: Unstated::of_result(result).and(pose.iter().flat_map(PoseJson::unstated)),
         pose,
         segment: None,
+        warnings: Some(result.warnings.iter().map(WarningJson::from).collect()),
     })
 }
 
@@ -87,6 +88,9 @@ struct TrackLine<'a> {
     /// Not of a plane in space, nor of the adaptive method.
     pose: Option<PoseJson>,
     segment: Option<usize>,
+    /// Of the last line of an object alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    warnings: Option<Vec<WarningJson>>,
 }
 
 /// A pose by the names that the columns of a trajectory have.

@@ -123,6 +123,15 @@ fn a_frame_that_shows_something_else_is_rejected_with_its_reason() {
 }
 
 #[test]
+fn two_rejected_frames_of_a_short_sequence_are_named_and_not_warned_of_as_many() {
+    let document = json(&succeed("identify - --format json", &first_one_then_another(2)));
+    let object = first_object(&document);
+    assert_eq!((&object["frames"], &object["frames_rejected"]), (&17.into(), &2.into()));
+    let codes: Vec<_> = object["warnings"].as_array().expect("a list").iter().map(|told| &told["code"]).collect();
+    assert!(codes.contains(&&"frame_rejected".into()) && !codes.contains(&&"frames_rejected".into()), "{codes:?}");
+}
+
+#[test]
 fn nothing_is_stated_of_an_object_that_was_given_up_until_the_next_one_is_known() {
     let document = json(&succeed("identify - --format json", &first_one_then_another(30)));
     let object = first_object(&document);

@@ -1,5 +1,6 @@
 //! The contract of the command line, tested on the binary itself.
 mod adaptive_study;
+mod advice;
 mod bad_input;
 mod browser;
 mod contacts;

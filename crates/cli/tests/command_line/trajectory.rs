@@ -20,16 +20,16 @@ fn number(rows: &[Vec<String>], row: usize, column: &str) -> f64 {
 fn the_trajectory_has_one_row_per_object_and_frame_with_pose_and_motion() {
     let rows = trajectory("", &(sequence("") + "20,5.0,1,1\n"));
     let header = "object,frame,time,accepted,angle,angle_std,x,x_std,y,y_std,omega,omega_std,b1,b1_std,b2,b2_std,segment,\
-                  v1,v1_std,v2,v2_std,reason,unstated,point_x,point_y";
+                  v1,v1_std,v2,v2_std,reason,unstated,point_x,point_y,aliases";
     assert_eq!(rows[0].join(","), header);
     assert_eq!(rows.len(), 1 + 16);
     assert!(rows[..16].iter().all(|row| row.len() == rows[0].len()));
     // Nothing is known of the motion in the first frame, and nothing of a frame that is no outline.
     let all = "angle unknown; x unknown; y unknown; omega unknown; b1 unknown; b2 unknown; v1 unknown; v2 unknown";
-    assert_eq!(rows[1].join(","), format!("0,0,0,true{},0,,,,,,{all},,", ",".repeat(12)));
+    assert_eq!(rows[1].join(","), format!("0,0,0,true{},0,,,,,,{all},,,", ",".repeat(12)));
     let no_outline = rows[16].join(",");
     assert!(no_outline.starts_with(&format!("0,20,,false{},0,,,,,", ",".repeat(12))), "{no_outline}");
-    assert!(no_outline.contains("frame 20") && no_outline.ends_with(&format!("{all},,")), "{no_outline}");
+    assert!(no_outline.contains("frame 20") && no_outline.ends_with(&format!("{all},,,")), "{no_outline}");
     for row in 2..=15 {
         let (angle, std) = (number(&rows, row, "angle"), number(&rows, row, "angle_std"));
         let truth = std::f64::consts::FRAC_PI_2 * (row - 1) as f64 / 30.0;
@@ -77,7 +77,7 @@ fn other_models_have_trajectories_too() {
         let rows = trajectory(options, &csv);
         assert!(rows[0].join(",").contains(&format!("accepted,{pose}")), "{options}: {:?}", rows[0]);
         assert!(
-            rows[15][4..rows[15].len() - 4].iter().all(|field| field.parse::<f64>().is_ok_and(f64::is_finite)),
+            rows[15][4..rows[15].len() - 5].iter().all(|field| field.parse::<f64>().is_ok_and(f64::is_finite)),
             "{options}"
         );
     }
@@ -205,4 +205,28 @@ fn the_velocity_of_the_middle_is_in_the_tables_as_in_json() {
             assert!((cell(name) - point).abs() < 1e-9, "{option} {name}");
         }
     }
+}
+
+#[test]
+fn the_trajectory_has_the_other_rates_of_a_symmetric_outline_in_every_row_that_states_one() {
+    let csv = sequence("--shape square --omega 2");
+    for options in ["", "--smooth"] {
+        let rows = trajectory(options, &csv);
+        assert!(rows[3..].iter().all(|row| row.last().is_some_and(|cell| !cell.is_empty())), "{options}");
+        let aliases: Vec<f64> = rows
+            .last()
+            .and_then(|row| row.last())
+            .expect("a cell")
+            .split("; ")
+            .map(|alias| alias.parse().expect("a number"))
+            .collect();
+        let whole = json(&succeed("identify - --json", &csv));
+        let listed = whole["objects"][0]["parameters"]["omega"]["aliases"].as_array().expect("a list").clone();
+        assert!(aliases.len() >= 2 && aliases.len() == listed.len(), "{aliases:?} {listed:?}");
+        for (alias, listed) in aliases.iter().zip(listed) {
+            assert!((alias - listed.as_f64().expect("a number")).abs() < 1e-3, "{alias} {listed}");
+        }
+    }
+    let rows = trajectory("", &sequence(""));
+    assert!(rows[1..].iter().all(|row| row.last().is_some_and(String::is_empty)));
 }

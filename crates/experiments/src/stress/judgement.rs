@@ -9,6 +9,7 @@ use super::sequence::Truth;
 
 /// Codes of warnings that do not question a value that is stated: that others are not, that single frames were not used, that the
 /// values are those at the end, or that there are others (which count where one of them is the true one). Every other warning makes up for a wrong value.
+/// `frames_rejected` does question them, but not which: a suite that is strict does not count it.
 pub const NOTES: [&str; 8] = [
     "aliases",
     "not_observable",
@@ -210,8 +211,8 @@ fn told_aliases(result: &ObjectResult, frame_rate: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use freeform_estimate::{MotionEstimate, PointVelocity};
-    use freeform_motion::Warning;
     use freeform_motion::tracker::Method;
+    use freeform_motion::{TracedContours, Warning};
     use freeform_outline_filter::Ambiguity;
     use nalgebra::{Matrix2, Vector2};
 
@@ -262,7 +263,7 @@ mod tests {
         let with = |warning| judged(&ObjectResult { warnings: vec![warning], ..result(3.0) });
         for note in [
             Warning::MotionChanged { dynamics: None },
-            Warning::NotObservable { parameters: vec!["b1"] },
+            Warning::NotObservable { parameters: vec!["b1"], contours: TracedContours::default() },
             Warning::NotKnown { parameters: vec!["b1"] },
             Warning::FramesRejected { rejected: 20, frames: 50 },
         ] {
