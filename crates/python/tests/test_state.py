@@ -84,7 +84,7 @@ def test_bytes_that_are_no_state_are_refused(bird):
         (data[:1000], "damaged"),
         (data + b"x", "damaged"),
         (data[:5000] + b"\x00\x01\x02" + data[5003:], "damaged"),
-        (bytes([data[0] + 1]) + data[1:], "has the format version 35, this library reads version 34"),
+        (bytes([data[0] + 1]) + data[1:], "has the format version 36, this library reads version 35"),
         (ff.Tracker().to_bytes(), "not the state of a filter"),
     ]:
         with pytest.raises(ValueError, match=message):

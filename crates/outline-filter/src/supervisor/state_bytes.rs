@@ -10,7 +10,7 @@ use crate::track::{SavedCells, Track};
 use crate::tuning::symmetry::LARGEST_ORDER;
 
 /// Version of the format: another one for every change of what is saved.
-const VERSION: u32 = 34;
+const VERSION: u32 = 35;
 
 /// The format of the bytes.
 const FORMAT: StateFormat = state_format(*b"filt", "filter");

@@ -128,7 +128,7 @@ fn states_of_another_version_or_kind_are_told() {
     let bytes = saved();
     let mut later = bytes.clone();
     later[0] += 1;
-    assert_eq!(MotionFilter::from_bytes(&later).err(), Some(StateError::Version { found: 35, supported: 34 }));
+    assert_eq!(MotionFilter::from_bytes(&later).err(), Some(StateError::Version { found: 36, supported: 35 }));
     let other = state_format(*b"else", "filter").with_header(&bytes[16..]);
     assert_eq!(MotionFilter::from_bytes(&other).err(), Some(StateError::Kind { expected: "filter" }));
     let longer = state_format(*b"filt", "filter").with_header(&[&bytes[16..], &[0]].concat());
