@@ -22,7 +22,7 @@ pub struct PictureTracing {
 /// What told objects from the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum TracedGround {
-    /// Nothing that a user could choose otherwise, as of tables and label masks.
+    /// Nothing that a background would take the place of: tables, masks, and rings.
     #[default]
     Unknown,
     /// Grey values, without a picture of the ground.

@@ -145,7 +145,7 @@ impl ContinuousAngle {
         let spread = match (self.omega, omega) {
             _ if self.open == 0.0 => 0.0,
             (Some(before), Some(now)) => now.spread(before, self.open),
-            // It may have stopped, or be twice as fast.
+            // It may have stopped, or be twice as fast, or have been so before it was known.
             (Some(only), None) | (None, Some(only)) => only.value.hypot(only.deviation) * self.open,
             (None, None) => TAU,
         };

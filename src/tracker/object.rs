@@ -15,7 +15,7 @@ use super::{
 use crate::Rectification;
 use crate::frame_ranges::FrameRanges;
 use crate::polygon::outline_of_pixel_polygon;
-use crate::rejection::{FrameRejection, RejectionCause, are_many_rejected};
+use crate::rejection::{FrameRejection, RejectionCause};
 use crate::warning::Warning;
 
 /// Rejected frames of an object that are kept with their reasons.
@@ -249,10 +249,6 @@ impl TrackedObject {
             warnings.push(Warning::Diverged);
         }
         if let Some(repeats) = self.repeats.warning() {
-            let others = self.rejected.saturating_sub(self.repeats.repeated());
-            // That they were not used is right.
-            let is_explained = |warning: &Warning| matches!(warning, Warning::FramesRejected { .. });
-            warnings.retain(|warning| !is_explained(warning) || are_many_rejected(others, self.frames));
             warnings.push(repeats);
             warnings.sort_by_key(Warning::order);
         }

@@ -20,7 +20,6 @@ pub(super) struct RepeatPattern {
     seen: Option<[(u64, f64); 2]>,
     /// Number of the last frame that was a repetition.
     last: Option<u64>,
-    repeated: usize,
     /// How often a repetition came so many frames after the one before.
     intervals: BTreeMap<u64, usize>,
     /// How often one came later or sooner than a converter makes them.
@@ -35,25 +34,22 @@ pub(super) enum Content {
 }
 
 impl RepeatPattern {
-    /// Takes a frame at a time in seconds.
+    /// Takes a frame at a time in seconds; one at no time, which no method takes, is left out.
     pub(super) fn take(&mut self, frame: u64, time: f64, content: Content) {
+        if !time.is_finite() {
+            return;
+        }
         let first = self.seen.map_or((frame, time), |[first, _]| first);
         self.seen = Some([first, (frame, time)]);
         if content == Content::New {
             return;
         }
-        self.repeated += 1;
         let interval = self.last.replace(frame).map(|last| frame.saturating_sub(last));
         match interval {
             Some(interval @ SHORTEST..=LONGEST) => *self.intervals.entry(interval).or_default() += 1,
             Some(_) => self.others += 1,
             None => {}
         }
-    }
-
-    /// How many frames were repetitions.
-    pub(super) fn repeated(&self) -> usize {
-        self.repeated
     }
 
     /// What is to be said where they come at regular intervals.
@@ -66,16 +62,13 @@ impl RepeatPattern {
         (is_regular && rate.is_finite() && rate > 0.0).then_some(Warning::RepeatedFrames { every: *every, rate })
     }
 
-    /// Whether it may be that of an object with so many frames.
+    /// Whether it may be that of an object of which so many frames were not used, repetitions among them.
     #[cfg(feature = "serde")]
-    pub(super) fn is_valid(&self, frames: usize) -> bool {
+    pub(super) fn is_valid(&self, rejected: usize) -> bool {
         let counted = self.intervals.values().try_fold(self.others, |sum, count| sum.checked_add(*count));
         let are_finite = self.seen.is_none_or(|seen| seen.iter().all(|(_, time)| time.is_finite()));
         let are_intervals = self.intervals.keys().all(|interval| (SHORTEST..=LONGEST).contains(interval));
-        are_finite
-            && are_intervals
-            && counted.is_some_and(|counted| counted <= self.repeated)
-            && self.repeated <= frames
+        are_finite && are_intervals && counted.is_some_and(|counted| counted <= rejected)
     }
 }
 
@@ -99,6 +92,18 @@ mod tests {
         assert!(matches!(warning, Warning::RepeatedFrames { every: 6, rate } if (rate - 30.0).abs() < 1e-9));
         assert!(warning.to_string().contains("from 25 to 30 frames a second"), "{warning}");
         assert!(matches!(told(30, |frame| frame % 2 == 1), Some(Warning::RepeatedFrames { every: 2, .. })));
+    }
+
+    #[test]
+    fn a_frame_at_no_time_changes_nothing() {
+        let mut pattern = RepeatPattern::default();
+        pattern.take(0, f64::NAN, Content::New);
+        for frame in 1..31 {
+            let content = if frame % 6 == 5 { Content::Repeated } else { Content::New };
+            pattern.take(frame, frame as f64 / 30.0, content);
+        }
+        pattern.take(31, f64::NAN, Content::New);
+        assert!(matches!(pattern.warning(), Some(Warning::RepeatedFrames { every: 6, .. })), "{pattern:?}");
     }
 
     #[test]

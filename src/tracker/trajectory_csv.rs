@@ -66,6 +66,6 @@ fn finite(value: Option<f64>) -> String {
 }
 
 fn aliases_cell(aliases: &[f64]) -> String {
-    let aliases: Vec<String> = aliases.iter().map(f64::to_string).collect();
+    let aliases: Vec<String> = aliases.iter().filter(|alias| alias.is_finite()).map(f64::to_string).collect();
     aliases.join("; ")
 }

@@ -245,9 +245,11 @@ impl PictureInput {
             (_, Some(ContoursChoice::All)) | (Some(_), None) => TracedContours::AllKnown,
             (_, Some(ContoursChoice::Boundary)) | (None, None) => TracedContours::BoundaryAlone,
         };
+        let is_mask = matches!(self.outline_uncertainty, Some(OutlineUncertainty::MaskPixel(_)));
         let ground = match (&self.options.background, self.options.ring) {
             (Some(_), _) => TracedGround::Background,
             (None, Some(_)) => TracedGround::Unknown,
+            (None, None) if is_mask => TracedGround::Unknown,
             (None, None) => TracedGround::GreyValues,
         };
         PictureTracing { ground, contours }

@@ -6,7 +6,7 @@ use crate::failure::warn;
 use crate::handful::{Line, Rest, handful};
 use crate::progress::Verbosity;
 
-/// Lines on objects that have left at most: a stream without end has ever more of them.
+/// Lines on objects that have left after which no more is said of others: a stream without end has ever more of them.
 const OF_OBJECTS_LEFT: usize = 25;
 
 /// Says what `identify` says of results, of each object of a stream when it has left, and of the others in the end.

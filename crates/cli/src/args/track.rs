@@ -21,7 +21,8 @@ where the mean of the points of the first outline is now. Angles go on beyond ha
 turn between poses of different segments is not known. In a frame that was not accepted the pose is the prediction, if there is \
 one. The adaptive method has no pose. The phases are acquiring, tracking and lost for the filter, start and adapt for the \
 adaptive method. The last line of an object that was in none of the last 1000 frames has the phase closed; its pose is not \
-known, and the object is then forgotten.
+known, and the object is then forgotten. It has the field warnings. Warnings of objects go to standard error when they have left \
+and at the end.
 
 A line is written and flushed as soon as its frame is complete. At the end of the input the exit status is 0, or 1 if no \
 frame could be used. If the points of a frame are not an outline, its line has accepted false and the reason. A picture \

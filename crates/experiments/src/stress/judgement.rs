@@ -7,9 +7,8 @@ use nalgebra::Point2;
 use super::poses::PoseErrors;
 use super::sequence::Truth;
 
-/// Codes of warnings that do not question a value that is stated: that others are not, that single frames were not used, that the
-/// values are those at the end, or that there are others (which count where one of them is the true one). Every other warning makes up for a wrong value.
-/// `frames_rejected` does question them, but not which: a suite that is strict does not count it.
+/// Codes of warnings that do not make up for a wrong value: that others are not stated, that single frames were not used, that the values are those
+/// at the end, or that there are others (which count where one of them is the true one); and `frames_rejected`, which does not say what it questions.
 pub const NOTES: [&str; 8] = [
     "aliases",
     "not_observable",

@@ -300,7 +300,7 @@ impl TurnHypotheses {
         outcome
     }
 
-    /// The smallest angle between poses that a rival and any other hypothesis lead to, rad.
+    /// The smallest angle between the turns of a rival and of any other hypothesis, over the step that they were taken in, rad.
     fn apart_from_others(&self, index: usize) -> f64 {
         let others = self.rival_turns.iter().enumerate().filter(|(other, _)| *other != index).map(|(_, turn)| turn);
         let apart = others.chain([&self.present_turn]).map(|turn| wrapped(turn - self.rival_turns[index]).abs());
