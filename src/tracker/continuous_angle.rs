@@ -16,8 +16,8 @@ const EITHER_WAY: f64 = TAU / (1.0 + Ambiguity::SURELY_SMALLER);
 /// Phase unwrapping: the angle of the poses of an object, continuous over time. Of the whole turns that it may have made since the pose before, those
 /// are counted that its angular velocity has made, the mean of those known last before and first afterwards; the fewest where none is known.
 ///
-/// Where an object was not seen for long, and its angular velocity is not known well enough, is not known yet, or was another one before than it is
-/// afterwards, whole turns may have been missed. So they may where it was seen to have turned by more than a third of a circle beyond what was
+/// Where an object was not seen for long, and its angular velocity is not known well enough, was not known before, is not known yet, or was another one
+/// before than it is afterwards, whole turns may have been missed. So they may where it was seen to have turned by more than a third of a circle beyond what was
 /// expected, and might have turned the other way round. The standard deviation of all angles from then on has what that may be.
 ///
 /// Predicted poses are in line with those before them, and nothing goes on from them.

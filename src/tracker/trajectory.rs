@@ -70,9 +70,22 @@ pub struct TrajectoryRow {
     turn_not_stated: NotStated,
     turn_ambiguity: TurnAmbiguity,
     velocity_not_stated: Option<NotStated>,
-    /// Other angular velocities that explained the outlines until then as well, and the one that was stated.
-    aliases: Vec<f64>,
-    aliased: Option<f64>,
+    aliases: Aliases,
+}
+
+/// Angular velocities that explained the outlines until a frame as well as the one that was stated.
+#[derive(Debug, Clone, PartialEq, Default)]
+struct Aliases {
+    others: Vec<f64>,
+    stated: Option<f64>,
+}
+
+impl Aliases {
+    /// Those of a motion at the same time, which later frames may have told better: they lie steps of the symmetry apart.
+    fn of(&self, motion: &MotionEstimate) -> Vec<f64> {
+        let Some((now, then)) = motion.mean_rate_of_turn().zip(self.stated) else { return Vec::new() };
+        self.others.iter().map(|other| other + (now - then)).collect()
+    }
 }
 
 /// Pose and motion of an object in one frame.
@@ -137,12 +150,6 @@ impl TrajectoryRow {
         of_motion.map_or(self.turn_not_stated, |(_, reason)| *reason)
     }
 
-    /// The other angular velocities of a motion at its time, which later frames may have told better: they lie steps of the symmetry apart.
-    fn aliases_of(&self, motion: &MotionEstimate) -> Vec<f64> {
-        let Some((now, then)) = mean_rate_of_turn(motion).zip(self.aliased) else { return Vec::new() };
-        self.aliases.iter().map(|alias| alias + (now - then)).collect()
-    }
-
     /// The values of the row that are not stated, each with why: of pose and motion by the names of their parameters, then `v1` and `v2`. `known` is
     /// what [`Trajectory::poses`] has for the row.
     #[must_use]
@@ -177,8 +184,10 @@ impl Trajectory {
             turn_not_stated: observation.turn_not_stated(),
             turn_ambiguity: TurnAmbiguity::of(observation),
             velocity_not_stated: observation.velocity_not_stated(),
-            aliases: observation.aliases.clone(),
-            aliased: motion.and_then(mean_rate_of_turn),
+            aliases: Aliases {
+                others: observation.aliases.clone(),
+                stated: motion.and_then(MotionEstimate::mean_rate_of_turn),
+            },
         });
     }
 
@@ -214,7 +223,7 @@ impl Trajectory {
                 pose,
                 motion: scale.map_or(motion, |scale| motion.in_space(scale)),
                 velocity: velocity.map(|velocity| scale.map_or(velocity, |scale| velocity.in_space(scale))),
-                aliases: row.aliases_of(&motion),
+                aliases: row.aliases.of(&motion),
             })
         });
         rows.collect()
@@ -257,12 +266,6 @@ impl Trajectory {
         });
         not_smoothed.collect()
     }
-}
-
-/// The angular velocity of a motion, or the mean one, where it is stated, rad/s.
-fn mean_rate_of_turn(motion: &MotionEstimate) -> Option<f64> {
-    let value = |name: &str| motion.parameters().find(|parameter| parameter.name == name)?.value;
-    value("omega").or_else(|| Some(0.5 * (value("a2")? - value("a3")?)))
 }
 
 /// How later frames take part.
@@ -316,16 +319,16 @@ fn tell_all_of_constant_motion(
     let velocity_not_stated = run[run.len() - 1].velocity_not_stated;
     let last = run.iter().rev().find(|row| row.state().is_some());
     let turn_ambiguity = last.map_or(TurnAmbiguity::Unambiguous, |row| row.turn_ambiguity);
-    let (aliases, aliased) = last.map_or((Vec::new(), None), |row| (row.aliases.clone(), row.aliased));
+    let aliases = last.map_or_else(Aliases::default, |row| row.aliases.clone());
+    let tell = |row: &mut TrajectoryRow| {
+        (row.velocity_not_stated, row.turn_ambiguity) = (velocity_not_stated, turn_ambiguity);
+        row.aliases.clone_from(&aliases);
+    };
     let segment = run[0].segment;
     let is_of_beginning = |row: &&mut &mut TrajectoryRow| row.accepted && row.segment == segment && row.state.is_none();
     for row in before.iter_mut().rev().take_while(is_of_beginning) {
         row.state = row.time.map(|time| first.predicted(time, noise));
-        (row.velocity_not_stated, row.turn_ambiguity) = (velocity_not_stated, turn_ambiguity);
-        (row.aliases, row.aliased) = (aliases.clone(), aliased);
+        tell(row);
     }
-    for row in run.iter_mut().filter(|row| row.state().is_some()) {
-        (row.velocity_not_stated, row.turn_ambiguity) = (velocity_not_stated, turn_ambiguity);
-        (row.aliases, row.aliased) = (aliases.clone(), aliased);
-    }
+    run.iter_mut().filter(|row| row.state().is_some()).for_each(|row| tell(row));
 }

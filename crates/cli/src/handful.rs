@@ -39,7 +39,7 @@ impl Line {
 pub(crate) enum Rest {
     /// In the document of the results.
     ListedByJson,
-    /// Nowhere.
+    /// Nowhere but in the last line of an object that has left.
     Counted,
 }
 
@@ -66,20 +66,20 @@ pub(crate) fn handful(results: &[ObjectResult], rest: Rest) -> Vec<Line> {
     lines
 }
 
-fn lines_of(warnings: &[Warning], elsewhere: Rest) -> Vec<Line> {
+fn lines_of(warnings: &[Warning], rest: Rest) -> Vec<Line> {
     let told = if warnings.len() > OF_OBJECT { OF_OBJECT - 1 } else { warnings.len() };
-    let (told, rest) = warnings.split_at(told);
+    let (told, untold) = warnings.split_at(told);
     let of_warning = |warning: &Warning| Line { code: Some(warning.code()), message: warning.to_string() };
     let mut lines: Vec<Line> = told.iter().map(of_warning).collect();
-    if !rest.is_empty() {
+    if !untold.is_empty() {
         let mut counts = BTreeMap::new();
-        rest.iter().for_each(|warning| *counts.entry(warning.code()).or_insert(0) += 1);
+        untold.iter().for_each(|warning| *counts.entry(warning.code()).or_insert(0) += 1);
         let counts: Vec<String> = counts.iter().map(|(code, count)| format!("{count} {code}")).collect();
-        let listed = match elsewhere {
+        let listed = match rest {
             Rest::ListedByJson => ", which --json lists",
             Rest::Counted => "",
         };
-        let others = format!("{} more warnings{listed}: {}", rest.len(), counts.join(", "));
+        let others = format!("{} more warnings{listed}: {}", untold.len(), counts.join(", "));
         lines.push(Line::without_code(others));
     }
     lines

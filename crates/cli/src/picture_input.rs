@@ -246,11 +246,12 @@ impl PictureInput {
             (_, Some(ContoursChoice::Boundary)) | (None, None) => TracedContours::BoundaryAlone,
         };
         let is_mask = matches!(self.outline_uncertainty, Some(OutlineUncertainty::MaskPixel(_)));
-        let ground = match (&self.options.background, self.options.ring) {
-            (Some(_), _) => TracedGround::Background,
-            (None, Some(_)) => TracedGround::Unknown,
-            (None, None) if is_mask => TracedGround::Unknown,
-            (None, None) => TracedGround::GreyValues,
+        let ground = if self.options.background.is_some() {
+            TracedGround::Background
+        } else if self.options.ring.is_some() || is_mask {
+            TracedGround::Unknown
+        } else {
+            TracedGround::GreyValues
         };
         PictureTracing { ground, contours }
     }

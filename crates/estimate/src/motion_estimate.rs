@@ -103,6 +103,13 @@ impl MotionEstimate {
         })
     }
 
+    /// The angular velocity, or the mean one `(a2 - a3) / 2` where that is not one of the parameters, rad/s; `None` where it is not stated.
+    #[must_use]
+    pub fn mean_rate_of_turn(&self) -> Option<f64> {
+        let value = |name: &str| self.parameters().find(|parameter| parameter.name == name)?.value;
+        value("omega").or_else(|| Some(0.5 * (value("a2")? - value("a3")?)))
+    }
+
     /// The raw values in the order of the model, those of unobservable parameters included.
     #[must_use]
     pub fn values(&self) -> &[f64] {

@@ -218,9 +218,7 @@ impl MotionFilter {
             return Vec::new();
         }
         let Some((estimate, track)) = self.estimate().zip(self.track.as_ref()) else { return Vec::new() };
-        let value = |name: &str| estimate.parameters().find(|parameter| parameter.name == name)?.value;
-        let known = value("omega").or_else(|| Some(0.5 * (value("a2")? - value("a3")?)));
-        let Some(omega) = known else { return Vec::new() };
+        let Some(omega) = estimate.mean_rate_of_turn() else { return Vec::new() };
         let unit = track.mean_rate_of_turn() / self.seconds_per_unit();
         // Omega is positive clockwise where y points up, turns the other way.
         self.turn_hypotheses.rates_apart().map(|apart| omega - apart * unit).collect()

@@ -236,13 +236,14 @@ impl TurnHypotheses {
             self.compare_intervals(seconds);
         }
         for index in (0..self.rivals.len()).rev() {
+            if self.rivals[index].track.is_none() {
+                continue;
+            }
             let farthest_turn = NEARBY * self.apart_from_others(index);
             let rival = &mut self.rivals[index];
             let Some(found) = rival.follow(settings, (track, frame), &outcome, (seconds, farthest_turn)) else {
                 // One that cannot be predicted is no way in which the object may have turned.
-                if rival.track.is_some() {
-                    self.rule_out(index);
-                }
+                self.rule_out(index);
                 continue;
             };
             let of_rival = rival.likelihood;
